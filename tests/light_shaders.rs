@@ -6,7 +6,7 @@ use bhr::film::{FilmParams, develop};
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{BlackbodyTable, MIN_TEMPERATURE};
 use bhr::scene::{Film, ToneMap, View};
-use bhr::sky::StarIndex;
+use bhr::sky::StarField;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
@@ -93,7 +93,7 @@ impl Gpu {
         let storage = |contents: &[u8], usage| {
             self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
         };
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let size = items.len() as u64 * 16;
         let output = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -217,7 +217,7 @@ fn gpu_blackbody_agrees() {
 #[test]
 fn gpu_stars_agree() {
     let gpu = Gpu::new();
-    let index = StarIndex::shared().expect("an index");
+    let index = StarField::catalogue().expect("an index");
     let mut items: Vec<Item> = Vec::new();
     for (i, star) in index.stars.iter().step_by(2 * 89).enumerate() {
         let near = widened(*star).normalize();

@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Calls on a context: one at a time, with its log callback listening.
 
-use super::context::{BhrContext, State};
 use super::entry::{Success, finish, refuse_at_the_end, refuse_in_callback};
-use super::log;
+use super::log::{self, Sink};
 use super::message::LastMessage;
 use super::panic::guarded;
 use super::pointer::is_null;
+use super::state::State;
 use super::status::{BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
-use parking_lot::MutexGuard;
+use parking_lot::{Mutex, MutexGuard};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A context, as calls on it need it: `BhrContext`, whose file uses this one.
+pub(super) trait Locked {
+    fn state(&self) -> &Mutex<State>;
+    /// A call, or a job, failed internally.
+    fn broken(&self) -> &AtomicBool;
+    /// The message of the last call that failed.
+    fn message(&self) -> &Arc<LastMessage>;
+    /// The callback that hears the log of calls.
+    fn log_sink(&self) -> Option<Arc<Sink>>;
+}
 
 /// A call on a context: refused inside callbacks, one at a time, with the context's log callback listening. `body`
 /// gets what the lock protects. After a failure of kind `Internal`, a caught panic above all, the context refuses
@@ -20,30 +32,30 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// `context` is NULL or came from `bhr_context_create` and is not destroyed.
 pub(super) unsafe fn on_context<T: Success>(
     function: &str,
-    context: *const BhrContext,
+    context: *const impl Locked,
     body: impl FnOnce(&mut State) -> Result<T>,
 ) -> BhrStatus {
     // SAFETY: NULL or alive, by this function's contract.
     let context = unsafe { context.as_ref() };
     if let Err(error) = refuse_in_callback() {
-        return keep(finish::<()>(function, Err(error)), context.map(|context| &*context.message));
+        return keep(finish::<()>(function, Err(error)), context.map(|context| &**context.message()));
     }
     let Some(context) = context else {
         return finish::<()>(function, Err(is_null("context")));
     };
-    let _scope = log::Scope::enter(context.sink());
+    let _scope = log::Scope::enter(context.log_sink());
     if let Err(error) = refuse_at_the_end() {
-        return keep(finish::<()>(function, Err(error)), Some(&context.message));
+        return keep(finish::<()>(function, Err(error)), Some(context.message()));
     }
-    let mut state = context.state.lock();
-    let result = if context.broken.load(Ordering::Relaxed) {
+    let mut state = context.state().lock();
+    let result = if context.broken().load(Ordering::Relaxed) {
         Err(Error::internal("this context failed internally before; only bhr_context_destroy is valid"))
     } else {
         guarded(|| body(&mut state))
     };
-    break_if_internal(&result, &context.broken);
+    break_if_internal(&result, context.broken());
     // bhr_context_destroy waits for the lock alone: after it the context may be gone.
-    let message = context.message.clone();
+    let message = context.message().clone();
     // Threads that wait for the lock go first: one that calls again and again would otherwise keep them out.
     MutexGuard::unlock_fair(state);
     keep(finish(function, result), Some(&message))
@@ -68,6 +80,7 @@ pub(super) fn break_if_internal<T>(result: &Result<T>, broken: &AtomicBool) {
 mod tests {
     use super::*;
     use crate::capi::callback::InsideCallback;
+    use crate::capi::context::BhrContext;
     use crate::capi::context::tests::cpu_context;
     use crate::capi::entry::{anywhere, outside_callbacks};
     use crate::capi::message::tests::message;
@@ -104,7 +117,10 @@ mod tests {
     #[test]
     fn a_null_context_is_named() {
         // SAFETY: NULL is allowed.
-        assert_eq!(unsafe { on_context("bhr_test", std::ptr::null(), |_| Ok(())) }, BHR_ERROR_INVALID_ARGUMENT);
+        assert_eq!(
+            unsafe { on_context("bhr_test", std::ptr::null::<BhrContext>(), |_| Ok(())) },
+            BHR_ERROR_INVALID_ARGUMENT
+        );
         assert_eq!(message(), "bhr_test: context is NULL");
     }
 }

@@ -3,7 +3,7 @@
 //! is set elsewhere.
 
 use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
-use super::call::on_context;
+use super::call::{Locked, on_context};
 use super::callback::in_callback;
 use super::entry::{anywhere, finish, outside_callbacks};
 use super::gate::{AT_THE_END, Gate};
@@ -11,7 +11,7 @@ use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
 use super::message::{LastMessage, copy_last};
 use super::panic::guarded;
 use super::pointer::{Out, check_flags};
-use super::render::Callback;
+use super::state::State;
 use super::status::BhrStatus;
 use super::version::BHR_ABI_VERSION;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
@@ -19,7 +19,6 @@ use super::window::{self, BhrWindow};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{HostVulkan, ReleaseGuard, process_end};
 use crate::renderer::{Renderer, RendererOptions};
-use crate::scene::Region;
 use crate::tracer::Backend;
 use ::log::LevelFilter;
 use parking_lot::Mutex;
@@ -42,14 +41,6 @@ pub struct BhrContext {
     log: Option<Registered>,
 }
 
-/// The part of a context that its lock protects.
-pub(super) struct State {
-    pub renderer: Renderer,
-    /// `None`: images are whole frames.
-    pub region: Option<Region>,
-    pub progress: Option<Callback>,
-}
-
 // Any thread may call.
 const _: () = {
     const fn shared<T: Send + Sync>() {}
@@ -59,6 +50,24 @@ const _: () = {
 impl BhrContext {
     pub(super) fn sink(&self) -> Option<Arc<Sink>> {
         self.log.as_ref().map(Registered::sink)
+    }
+}
+
+impl Locked for BhrContext {
+    fn state(&self) -> &Mutex<State> {
+        &self.state
+    }
+
+    fn broken(&self) -> &AtomicBool {
+        &self.broken
+    }
+
+    fn message(&self) -> &Arc<LastMessage> {
+        &self.message
+    }
+
+    fn log_sink(&self) -> Option<Arc<Sink>> {
+        self.sink()
     }
 }
 

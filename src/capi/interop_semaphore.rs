@@ -67,7 +67,7 @@ pub(super) unsafe fn make(
     context: *mut BhrContext,
     kind: BhrSemaphoreKind,
     out_semaphore: *mut *mut BhrSemaphore,
-    origin: impl FnOnce(&super::context::State) -> Result<SemaphoreOrigin>,
+    origin: impl FnOnce(&super::state::State) -> Result<SemaphoreOrigin>,
 ) -> BhrStatus {
     // SAFETY: this function's contract.
     unsafe {

@@ -264,7 +264,7 @@ pub(super) unsafe fn make(
     options: *const BhrTargetOptions,
     out_target: *mut *mut BhrTarget,
     wrapped: bool,
-    origin: impl FnOnce(&super::context::State, &mut TargetShape, u32) -> Result<TargetOrigin>,
+    origin: impl FnOnce(&super::state::State, &mut TargetShape, u32) -> Result<TargetOrigin>,
 ) -> BhrStatus {
     // SAFETY: this function's contract.
     unsafe {

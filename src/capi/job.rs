@@ -3,7 +3,7 @@
 
 use super::call::{break_if_internal, keep, on_context};
 use super::callback::in_callback;
-use super::context::{BhrContext, State};
+use super::context::BhrContext;
 use super::entry::{self, SuccessStatus, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
@@ -11,7 +11,8 @@ use super::log::{self, Sink};
 use super::message::{LastMessage, copy_last};
 use super::panic::guarded;
 use super::pointer::{Out, is_null};
-use super::render::{Callback, Report};
+use super::progress::{Callback, Report};
+use super::state::State;
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
 use crate::gpu::process_end;

@@ -9,7 +9,7 @@ use super::image::{self, BhrImage, path_of};
 use super::interop_target::BhrTarget;
 use super::job::{BhrJob, new_job};
 use super::pointer::{Out, check_reserved, is_null, unknown};
-use super::render::Report;
+use super::progress::Report;
 use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use super::view::view;

@@ -2,10 +2,10 @@
 //! Rendering into the host's memory, and the progress callback that goes with it.
 
 use super::call::on_context;
-use super::callback::InsideCallback;
 use super::context::BhrContext;
 use super::image::{self, BHR_IMAGE_TRANSPARENT, BhrImage};
 use super::log::User;
+use super::progress::{Callback, Report};
 use super::status::BhrStatus;
 use crate::error::{Error, ErrorKind};
 use std::ffi::c_void;
@@ -14,45 +14,6 @@ use std::ffi::c_void;
 /// 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread. It must
 /// not throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
 pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
-
-/// The host's progress callback with its argument.
-#[derive(Clone, Copy)]
-pub(super) struct Callback {
-    function: unsafe extern "C" fn(*mut c_void, f64) -> i32,
-    user: User,
-}
-
-/// Tells the callback of one frame's progress: never less than before, never outside 0 .. 1.
-pub(super) struct Report {
-    callback: Option<Callback>,
-    told: f64,
-}
-
-impl Report {
-    pub(super) fn new(callback: Option<Callback>) -> Self {
-        Self { callback, told: 0.0 }
-    }
-
-    /// False: cancel.
-    pub(super) fn tell(&mut self, fraction: f64) -> bool {
-        if fraction > self.told {
-            self.told = fraction.min(1.0);
-        }
-        let Some(callback) = self.callback else {
-            return true;
-        };
-        let _inside = InsideCallback::progress();
-        // SAFETY: the host gave this function with this pointer for this context's frames.
-        unsafe { (callback.function)(callback.user.0, self.told) != 0 }
-    }
-
-    /// The last word, if it has not been said.
-    pub(super) fn finish(&mut self) {
-        if self.told < 1.0 {
-            self.tell(1.0);
-        }
-    }
-}
 
 /// Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are begun
 /// from now on. fn NULL: none (default). Errors: INVALID_ARGUMENT for a NULL context.
@@ -130,26 +91,5 @@ pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const Bh
             let (size, transparent) = ([layout.width, layout.height], flags & BHR_IMAGE_TRANSPARENT != 0);
             state.renderer.prepare(layout.format, size, transparent, state.region, &mut progress)
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn progress_never_falls_nor_leaves_its_range() {
-        unsafe extern "C" fn keep(user: *mut c_void, fraction: f64) -> i32 {
-            // SAFETY: the test passes this Vec.
-            unsafe { &mut *user.cast::<Vec<f64>>() }.push(fraction);
-            i32::from(fraction < 0.5)
-        }
-        let mut heard: Vec<f64> = Vec::new();
-        let user = User((&raw mut heard).cast());
-        let mut report = Report { callback: Some(Callback { function: keep, user }), told: 0.0 };
-        let go_on: Vec<bool> = [0.0, 0.25, 0.125, f64::NAN, -1.0, 7.0].map(|fraction| report.tell(fraction)).into();
-        report.finish();
-        assert_eq!(heard, [0.0, 0.25, 0.25, 0.25, 0.25, 1.0]);
-        assert_eq!(go_on, [true, true, true, true, true, false]);
     }
 }

@@ -2,16 +2,18 @@
 //! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the
 //! GPU tracer is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
-mod delivery;
-mod frame;
-mod half;
-mod lens;
-mod outputs;
 mod rays;
 mod record;
-pub(crate) mod refine;
 pub(crate) mod shade;
 mod tables;
+mod half;
+mod lens;
+mod record_source;
+pub(crate) mod refine;
+mod frame;
+mod delivery;
+mod render;
+mod outputs;
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};

@@ -3,7 +3,8 @@
 //! `scene::output` makes of its record. Knows no host memory.
 
 use super::CpuTracer;
-use super::frame::{Frame, TILE_WIDTH, tiles};
+use super::frame::Frame;
+use super::render::{TILE_WIDTH, tiles};
 use crate::allocate::{self, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::output::{MOST_OUTPUTS, OUTPUT_WORDS, RayValues};

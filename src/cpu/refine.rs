@@ -2,8 +2,8 @@
 //! The second look at a pixel that edges run through: more rays, each for a cell of its own, and their mean light.
 //! Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
 
-use super::frame::RecordSource;
 use super::record::{derivative_of_direction, derivative_of_place};
+use super::record_source::RecordSource;
 use super::shade::Shader;
 use crate::physics::lens::critical::CurveLevel;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};

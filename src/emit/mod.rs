@@ -9,25 +9,25 @@
 //!
 //! To add an emitter, follow "Where to change what" in ARCHITECTURE.md.
 
-pub mod along;
 pub mod bands;
-pub mod clouds;
 pub mod crossing;
 pub mod disk;
+mod lattice;
+pub mod volume;
 pub mod effects;
 pub mod filaments;
 pub mod glow;
-pub mod half;
 pub mod hot_spot;
-mod lattice;
-pub mod matter;
-pub mod medium;
 pub mod shape;
 pub mod streaks;
-pub mod thin_disk;
+pub mod clouds;
+pub mod medium;
 pub mod turbulence;
-pub mod volume;
+pub mod half;
+pub mod matter;
+pub mod thin_disk;
 pub mod volumes;
+pub mod along;
 
 pub use crossing::{Crossing, Emission, EmissionPoint, Shift};
 

@@ -2,10 +2,8 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::passes::bloom;
-use super::frame::resources::{occluder, sky_target};
-use super::frame::uniforms::{clouds, frame, matter};
-use super::frame::{host_rays, render_outputs};
+use super::frame::resources::{bloom_textures, occluder, sky_target};
+use super::frame::uniforms::{clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -17,15 +15,15 @@ fn shared() -> Vec<Layout> {
     let film = layout!(crate::film::FilmParams as "FilmParams": exposure, tone_map, format, false_colour, view_low,
         view_scale, transparent, colour_map);
     let [scene, pass] = frame::layouts();
-    let [given, start, end] = host_rays::layouts();
-    let [level, beam] = bloom::layouts();
+    let [given, start, end] = rays::layouts();
+    let [level, beam] = bloom_textures::layouts();
     let [cloud, clouds] = clouds::layouts();
     let (matter, kerr, schwarzschild) = (matter::layout(), kerr::layout(), schwarzschild::layout());
     vec![
         film,
         scene,
         pass,
-        render_outputs::layout(),
+        outputs::layout(),
         sky_target::layout(),
         occluder::layout(),
         matter,

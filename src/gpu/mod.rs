@@ -4,15 +4,15 @@
 //! `device`, `kernel`, `lens`, `frame`; beside the last two `window`.
 
 mod device;
+mod kernel;
+mod lens;
+mod window;
 mod frame;
 mod gl_tracer;
-mod kernel;
 #[cfg(test)]
 mod layouts;
-mod lens;
 #[cfg(test)]
 mod twins;
-mod window;
 
 pub use device::adapter::{Adapter, Search, absence, adapters, check_built, forget_drivers};
 pub use device::buffer::Buffer;
@@ -29,7 +29,8 @@ pub use device::pipeline::{Kernel, Loops, ProvenFinite};
 pub(crate) use device::process_end;
 pub use device::readback::{MappedReadback, PendingReadback, Readback};
 pub use device::semaphores::{FrameSync, GpuSemaphore, SemaphoreUse};
-pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requirements};
+pub use device::sharing::{host_adapter, vulkan_requirements};
+pub use device::target::{GpuTarget, TargetResource};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};

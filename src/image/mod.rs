@@ -3,8 +3,8 @@
 //! tracers.
 
 mod copiers;
-pub mod file;
 pub mod memory;
+pub mod file;
 
 pub use copiers::Copiers;
 pub use file::{Attribute, Layer, Loaded, Pixels, load, save, save_layers};

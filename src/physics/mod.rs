@@ -5,18 +5,18 @@
 //! Chart: x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the Boyer-Lindquist coordinates
 //! about the spin axis +z. `a` is signed: a < 0 turns the hole towards -ph. Prograde means towards +ph.
 
-pub mod blackbody;
 pub mod cie1931;
-pub mod disk_flux;
-pub mod flow;
-pub mod geodesic;
-pub mod images;
-pub mod integrator;
-pub mod lens;
 pub mod limb_darkening;
-pub mod metric;
-pub mod observer;
 pub mod orbit;
+pub mod blackbody;
+pub mod disk_flux;
+pub mod geodesic;
+pub mod metric;
+pub mod flow;
+pub mod integrator;
+pub mod observer;
 pub mod plunge;
+pub mod images;
 pub mod shadow;
 pub mod trace;
+pub mod lens;

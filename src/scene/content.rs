@@ -3,6 +3,7 @@
 
 use super::camera::Camera;
 use super::film::Film;
+use super::frame::Region;
 use super::hole::Hole;
 use super::occluder::Occluder;
 use super::on_device::OnDevice;
@@ -18,11 +19,13 @@ use crate::emit::turbulence::Turbulence;
 use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
 use crate::emit::{Emitters, Needs};
+use crate::error::{Error, Result};
 use crate::image::PixelFormat;
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
-use crate::sky::{SkyMap, StarIndex};
+use crate::sky::{SkyMap, StarField, StarIndex};
 use arrayvec::ArrayVec;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The quantity that a pixel shows (`BHR_VIEW_*`).
@@ -186,6 +189,33 @@ impl Scene {
         let delayed = self.effects.has(Effects::LIGHT_DELAY);
         let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX);
         self.volumes_at(When { time, reference_delay: 0.0, delayed }, Accuracy::EXACT)
+    }
+
+    /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
+    /// `StarField::index`.
+    pub fn stars(&self) -> Result<Arc<StarIndex>> {
+        if let Some(stars) = &self.given_stars {
+            return Ok(stars.clone());
+        }
+        let field = self.sky.star_field().unwrap_or(StarField::Catalogue);
+        if self.shows_stars() && self.view == View::Light {
+            return field.index();
+        }
+        field.index_if_made()?.map_or_else(StarField::catalogue, Ok)
+    }
+
+    /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:
+    /// INVALID_ARGUMENT for those of another size.
+    pub fn behind(&self, occluder: Option<&Occluder>, size: [u32; 2], region: &Region) -> Result<Cow<'_, Self>> {
+        let Some(occluder) = occluder.filter(|_| self.view == View::Light) else { return Ok(Cow::Borrowed(self)) };
+        self.check_one_eye("an occluder")?;
+        let given = [occluder.width, occluder.height];
+        if given != size {
+            let ([w, h], [width, height]) = (given, size);
+            return Err(Error::argument(format!("the occluder is {w} x {h}; the image is {width} x {height}")));
+        }
+        let occluder = Occluder { origin: [region.x, region.y], ..occluder.clone() };
+        Ok(Cow::Owned(Self { occluder: Some(occluder), ..self.clone() }))
     }
 
     /// When the frame shows its emitters.

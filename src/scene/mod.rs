@@ -2,31 +2,31 @@
 //! The scene as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
 //! May use `physics`, `sky` and `emit`; may not know of C, of pointers or of the GPU.
 
-pub mod camera;
-mod content;
-pub mod eyes;
 pub mod film;
-pub mod frame;
 pub mod hole;
-pub mod host_rays;
-pub mod lensing;
-pub mod matrices;
-pub mod observer;
-pub mod occluder;
 mod on_device;
-pub mod output;
-mod parameters;
-pub mod preset;
-pub mod project;
-pub mod projection;
 pub mod quality;
-pub mod query;
 pub mod rays;
-pub mod record;
 pub mod refine;
 pub mod sky;
 mod spread;
+pub mod camera;
+pub mod occluder;
+pub mod record;
+pub mod frame;
+pub mod matrices;
+mod content;
+pub mod projection;
+pub mod eyes;
+pub mod host_rays;
+pub mod lensing;
+pub mod observer;
+mod parameters;
+pub mod preset;
+pub mod output;
+pub mod query;
 pub mod trace;
+pub mod project;
 
 pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
 pub use crate::emit::effects::Effects;

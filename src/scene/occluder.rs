@@ -2,13 +2,12 @@
 //! The host's own things before the camera, as distances, and the part of a ray that they leave. Mirrored by
 //! shaders/shade/shade.wgsl. Knows no pixels' colours.
 
-use super::{OnDevice, Region, Scene, View};
+use super::OnDevice;
 use crate::allocate::with_room;
 use crate::emit::Crossing;
 use crate::error::{Error, Number, Result};
 use crate::image::{ImageRef, PixelFormat};
 use glam::DVec3;
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Distances along the look directions of a frame's pixels, row by row from the top left, in scene lengths; infinity
@@ -102,22 +101,6 @@ pub fn distance(crossing: &Crossing, eye: DVec3) -> f64 {
 pub fn place(crossing: &Crossing) -> DVec3 {
     let (sin, cos) = crossing.place.azimuth.sin_cos();
     DVec3::new(cos, sin, 0.0) / crossing.u
-}
-
-impl Scene {
-    /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:
-    /// INVALID_ARGUMENT for those of another size.
-    pub fn behind(&self, occluder: Option<&Occluder>, size: [u32; 2], region: &Region) -> Result<Cow<'_, Self>> {
-        let Some(occluder) = occluder.filter(|_| self.view == View::Light) else { return Ok(Cow::Borrowed(self)) };
-        self.check_one_eye("an occluder")?;
-        let given = [occluder.width, occluder.height];
-        if given != size {
-            let ([w, h], [width, height]) = (given, size);
-            return Err(Error::argument(format!("the occluder is {w} x {h}; the image is {width} x {height}")));
-        }
-        let occluder = Occluder { origin: [region.x, region.y], ..occluder.clone() };
-        Ok(Cow::Owned(Self { occluder: Some(occluder), ..self.clone() }))
-    }
 }
 
 #[cfg(test)]

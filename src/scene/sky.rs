@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The sky at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
-use super::{Scene, View};
 use crate::error::{Error, Number, Result, out_of_range};
-use crate::sky::{StarField, StarIndex};
+use crate::sky::StarField;
 use glam::DQuat;
-use std::sync::Arc;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
@@ -79,20 +77,5 @@ impl Sky {
             (true, false) => Some(StarField::Catalogue),
             (false, false) => None,
         }
-    }
-}
-
-impl Scene {
-    /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
-    /// `StarField::index`.
-    pub fn stars(&self) -> Result<Arc<StarIndex>> {
-        if let Some(stars) = &self.given_stars {
-            return Ok(stars.clone());
-        }
-        let field = self.sky.star_field().unwrap_or(StarField::Catalogue);
-        if self.shows_stars() && self.view == View::Light {
-            return field.index();
-        }
-        field.index_if_made()?.map_or_else(StarField::catalogue, Ok)
     }
 }

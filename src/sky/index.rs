@@ -4,7 +4,6 @@
 //! `shaders/sky/stars.wgsl` has `cell_of` and `level_for` too.
 
 use super::catalogue::Star;
-use super::field::StarField;
 use super::galaxy::{GALACTIC_POLE, crowded_density, crowding};
 use super::shift::{SHIFT_SIZE, ShiftTable};
 use crate::allocate::{collected, filled, with_room};
@@ -12,7 +11,6 @@ use crate::error::Result;
 use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
 use glam::DVec3;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// Levels of the pyramid, finest first; each halves the cells of a cube side.
 pub const STAR_LEVELS: u32 = 6;
@@ -141,11 +139,6 @@ impl std::fmt::Debug for StarIndex {
 }
 
 impl StarIndex {
-    /// The index of the catalogue's stars. Errors: OUT_OF_MEMORY.
-    pub fn shared() -> Result<Arc<Self>> {
-        StarField::catalogue()
-    }
-
     /// The index of any stars. Errors: OUT_OF_MEMORY.
     pub fn new(stars: impl Iterator<Item = Star>) -> Result<Self> {
         let mut stars = collected(stars, STARS)?;
@@ -378,6 +371,7 @@ fn mixed<'a>(parts: impl Iterator<Item = &'a MeanSkyPart>, g: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sky::StarField;
 
     /// Directions spread evenly over the sphere (golden spiral), among them ones close to cube edges.
     fn directions(count: u32) -> impl Iterator<Item = DVec3> {
@@ -391,7 +385,7 @@ mod tests {
 
     #[test]
     fn one_lookup_finds_every_star_within_the_margin() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let corner = DVec3::splat(1.0).normalize();
         let edge = DVec3::new(1.0, 1.0 - 1e-12, 0.01).normalize();
         for direction in directions(300).chain([corner, -corner, edge, DVec3::X, DVec3::NEG_Z]) {
@@ -460,7 +454,7 @@ mod tests {
     #[test]
     fn memory_stays_small_and_lists_are_in_order() {
         let random = StarField::Procedural(1).index().expect("an index");
-        for (index, megabytes, longest) in [(StarIndex::shared().expect("an index"), 14, 64), (random, 105, 160)] {
+        for (index, megabytes, longest) in [(StarField::catalogue().expect("an index"), 14, 64), (random, 105, 160)] {
             let entries = index.light_table_size();
             assert!(entries * 16 + index.star_cells.len() * 4 < megabytes * 1_000_000, "{entries} entries");
             assert_eq!(index.star_cells.len(), CELL_COUNT);
@@ -487,7 +481,7 @@ mod tests {
     /// The GPU's tables hold what the shaders look for where they look for it.
     #[test]
     fn tables_are_where_the_shaders_look() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let tables: Vec<[f32; 4]> = index.light_tables().collect();
         assert_eq!(tables.len(), index.light_table_size());
         let last = tables[MEAN_SKY_OFFSET + STAR_LEVELS as usize - 1];
@@ -505,7 +499,7 @@ mod tests {
     /// The stars that a level lists and those in its mean sky are together all the light.
     #[test]
     fn every_level_has_the_light_of_all_stars() {
-        every_level_has_the_light_of(&StarIndex::shared().expect("an index"));
+        every_level_has_the_light_of(&StarField::catalogue().expect("an index"));
         every_level_has_the_light_of(&StarField::Continued(2).index().expect("an index"));
     }
 
@@ -521,7 +515,7 @@ mod tests {
 
     #[test]
     fn mean_sky_beyond_the_levels_has_the_light_of_all_stars_under_any_shift() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let table = BlackbodyTable::shared();
         for (g, tolerance) in [(0.5, 0.05), (1.0, 0.01), (2.0, 0.05)] {
             let mut exact = [0.0; 3];

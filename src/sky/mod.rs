@@ -5,15 +5,15 @@
 //! holes, lenses and cameras.
 
 pub mod catalogue;
-mod field;
+pub(crate) mod grid;
+mod map;
+pub(crate) mod shift;
 pub(crate) mod filter;
 pub mod galaxy;
-pub(crate) mod grid;
 pub mod index;
-mod map;
-mod milky_way;
 pub mod procedural;
-pub(crate) mod shift;
+mod field;
+mod milky_way;
 pub(crate) mod stars;
 
 pub use field::StarField;

@@ -139,6 +139,7 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::physics::blackbody::LUMINANCE;
+    use crate::sky::StarField;
     use crate::sky::catalogue::Star;
     use crate::sky::index::STAR_REFERENCE_RADIANCE;
 
@@ -227,7 +228,7 @@ mod tests {
 
     #[test]
     fn index_and_plain_search_draw_the_same() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let table = BlackbodyTable::shared();
         // Footprints of the levels that hold all stars, before any of them fades.
         for (i, scale) in [2e-4, 1e-3, 1.6e-3, 1.75e-3].into_iter().enumerate() {
@@ -255,7 +256,7 @@ mod tests {
 
     #[test]
     fn wide_pixels_blend_into_the_mean() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let mean = index.mean_sky[STAR_LEVELS as usize].radiance * index.mean_sky_density(DVec3::Z);
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, [dx, dy], 1.0, 1.0, LEAST)) / mean - 1.0).abs() < 1e-3);
@@ -272,7 +273,7 @@ mod tests {
 
     #[test]
     fn anything_gives_finite_light() {
-        let index = StarIndex::shared().expect("an index");
+        let index = StarField::catalogue().expect("an index");
         let star = &index.stars[0];
         let d = DVec3::new(star[0].into(), star[1].into(), star[2].into());
         let t = d.any_orthonormal_vector();

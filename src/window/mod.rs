@@ -4,13 +4,13 @@
 //! `window` every window is UNSUPPORTED.
 
 pub(crate) mod claim;
-#[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
-pub(crate) mod memory;
-mod native;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod wayland;
+mod native;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod x11;
+#[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
+pub(crate) mod memory;
 
 pub use native::{Handles, NativeWindow};
 

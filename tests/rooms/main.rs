@@ -6,6 +6,7 @@
 mod imports;
 mod lengths;
 mod licences;
+mod modules;
 mod names;
 mod shaders;
 mod words;

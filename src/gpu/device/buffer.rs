@@ -1,45 +1,24 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Buffers on a device: checked against its limits before wgpu is asked, and counted while they exist.
 
+use super::counted::Counted;
 use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
 use crate::tracer::Backend;
 use std::ops::Deref;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A [`wgpu::Buffer`] that [`Device::bytes`] counts until it is dropped. (Bind groups that hold it keep its memory
 /// longer.)
 pub struct Buffer {
     raw: wgpu::Buffer,
-    total: Arc<AtomicU64>,
-}
-
-/// Bytes that [`Device::bytes`] counts as long as this lives.
-pub struct Counted {
-    bytes: u64,
-    total: Arc<AtomicU64>,
-}
-
-impl Counted {
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-}
-
-impl Drop for Counted {
-    fn drop(&mut self) {
-        self.total.fetch_sub(self.bytes, Ordering::Relaxed);
-    }
+    _counted: Counted,
 }
 
 impl Device {
     /// Counts bytes that are not wgpu's.
     pub(in crate::gpu) fn counted(&self, bytes: u64) -> Counted {
-        let total = self.byte_count();
-        total.fetch_add(bytes, Ordering::Relaxed);
-        Counted { bytes, total }
+        Counted::new(self.byte_count(), bytes)
     }
 
     /// A buffer of `size` bytes, rounded up to a multiple of 4, filled with zeros.
@@ -52,9 +31,7 @@ impl Device {
         let size = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         let descriptor = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let raw = self.scoped(label, |device| device.create_buffer(&descriptor))?;
-        let total = self.byte_count();
-        total.fetch_add(size, Ordering::Relaxed);
-        Ok(Buffer { raw, total })
+        Ok(Buffer { raw, _counted: self.counted(size) })
     }
 
     /// Runs `work`, which touches the mapped memory of `buffer`, while that cannot be destroyed: once a device has
@@ -121,12 +98,6 @@ impl Deref for Buffer {
 
     fn deref(&self) -> &wgpu::Buffer {
         &self.raw
-    }
-}
-
-impl Drop for Buffer {
-    fn drop(&mut self) {
-        self.total.fetch_sub(self.raw.size(), Ordering::Relaxed);
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::process_end;
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
-use super::sharing::GpuTarget;
+use super::target::{GpuTarget, TargetRead};
 use super::turns::InUse;
 use super::wgpu_device::{Device, Uploads, hangs_after};
 use crate::deferred::hold;
@@ -14,13 +14,6 @@ use std::sync::Arc;
 /// Waiting goes in pieces of this, between which the device may be lost.
 #[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
-
-/// A target that a frame reads: an image by way of a buffer of bhr's, a buffer in that way or as it is.
-pub struct TargetRead {
-    pub target: Arc<GpuTarget>,
-    /// The buffer that it is copied into.
-    pub staged: Option<Arc<GpuTarget>>,
-}
 
 /// The part of a frame's handover that goes with one submission.
 #[derive(Default)]

@@ -4,7 +4,7 @@
 
 use super::external::QueueLock;
 use super::semaphores::SemaphoreUse;
-use super::sharing::GpuTarget;
+use super::target::GpuTarget;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -7,7 +7,9 @@ use super::adapter::{Adapter, device_descriptor};
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
 use super::turns::{HostTurn, QueueTurns};
 #[cfg(not(target_vendor = "apple"))]
-use super::vulkan::{self, parts::VulkanParts};
+use super::vulkan::parts::{self, VulkanParts};
+#[cfg(not(target_vendor = "apple"))]
+use super::vulkan_host;
 use super::{driver_lock, process_end};
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result, panic_text};
@@ -76,9 +78,9 @@ fn opened(
     #[cfg(not(target_vendor = "apple"))]
     if let Some(host) = adapter.host() {
         let _turn = host.lock.as_deref().map(HostTurn::new);
-        return vulkan::host::open(raw, host, descriptor);
+        return vulkan_host::open(raw, host, descriptor);
     } else if adapter.info.backend == Backend::Vulkan
-        && let Some(opened) = vulkan::parts::open(raw, descriptor)
+        && let Some(opened) = parts::open(raw, descriptor)
     {
         return opened;
     }

@@ -6,9 +6,8 @@
 use super::tracer::GpuTracer;
 use crate::allocate::{collected, with_room};
 use crate::error::{Error, Result};
-use crate::gpu::device::buffer::Buffer;
-use crate::gpu::device::readback::Readback;
 use crate::gpu::frame::plan::f32_settings::{ray_settings, variant};
+use crate::gpu::frame::uniforms::rays::{RayEnd, RayStart, RaysUniform};
 use crate::gpu::kernel::key::KernelKey;
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::observer::LocalFrame;
@@ -17,7 +16,6 @@ use crate::physics::trace::{self, PlaneCrossing, RayTrace};
 use crate::scene::host_rays::trace_some;
 use crate::scene::{Fate, Hit, MAX_CROSSINGS, Ray, Scene};
 use arrayvec::ArrayVec;
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use wgpu::BufferUsages as Usage;
 
@@ -32,48 +30,6 @@ const TOO_NEAR: f64 = 1e-4;
 const WINDS: f64 = 0.05;
 /// `RayEnd`s of a ray: its end and its crossings.
 const ENDS: usize = 1 + MAX_CROSSINGS;
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct RaysUniform {
-    step: f32,
-    tolerance: f32,
-    max_steps: u32,
-    count: u32,
-    a: f32,
-    r_plus: f32,
-    r_minus: f32,
-    capture_u: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct RayStart {
-    light: [f32; 4],
-    curve: [f32; 4],
-    n: [f32; 4],
-    dn: [f32; 4],
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct RayEnd {
-    n: [f32; 4],
-    rest: [u32; 4],
-}
-
-#[cfg(test)]
-pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 3] {
-    use crate::gpu::kernel::layout::layout;
-    let given = layout!(RaysUniform as "RaysUniform": step, tolerance, max_steps, count, a, r_plus, r_minus, capture_u);
-    [given, layout!(RayStart as "RayStart": light, curve, n, dn), layout!(RayEnd as "RayEnd": n, rest)]
-}
-
-#[derive(Default)]
-pub struct RayBuffers {
-    resources: Option<[Buffer; 3]>,
-    readback: Readback,
-}
 
 /// A valid ray of the batch.
 struct StartedRay {

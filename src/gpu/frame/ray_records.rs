@@ -14,7 +14,7 @@ use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::EXPORT_VECTORS;
 use crate::gpu::kernel::variant::PixelTarget;
-use crate::gpu::lens::records::Shared;
+use crate::gpu::lens::traced::Shared;
 use crate::physics::trace::Fate;
 use crate::scene::Scene;
 use crate::scene::record::Record;
@@ -77,7 +77,7 @@ impl GpuTracer {
     }
 
     fn try_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
-        let setup = self.set_up(scene, request, PixelTarget::Packed)?;
+        let setup = self.planner().set_up(scene, request, PixelTarget::Packed)?;
         let tile = [request.width, request.height];
         let device = &self.device;
         let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };

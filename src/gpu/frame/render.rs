@@ -6,12 +6,12 @@
 
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::passes::bloom::LIGHT_BYTES;
 use crate::gpu::frame::passes::outputs_beside::{BesideSetup, PlacedOutput};
-use crate::gpu::frame::passes::refine::EdgeList;
 use crate::gpu::frame::plan::setup::{FrameTarget, Setup};
 use crate::gpu::frame::plan::steps::Steps;
 use crate::gpu::frame::plan::tiles::{Budget, TilePlan};
+use crate::gpu::frame::resources::bloom_textures::LIGHT_BYTES;
+use crate::gpu::frame::resources::edge_list::EdgeList;
 use crate::gpu::frame::resources::frame_buffers::Size;
 use crate::gpu::frame::resources::occluder::takes_rows;
 use crate::gpu::frame::resources::sky_target::level_kernels;
@@ -89,9 +89,9 @@ impl GpuTracer {
         window: Option<&FrameRequest>,
         progress: &mut Progress<'_>,
     ) -> Result<()> {
-        let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
+        let mut keys = self.planner().set_up(scene, request, self.planner().host_pixels(scene))?.kernels();
         if let Some(window) = window {
-            keys.extend(self.set_up(scene, window, PixelTarget::SCREEN)?.kernels());
+            keys.extend(self.planner().set_up(scene, window, PixelTarget::SCREEN)?.kernels());
         }
         let batch = self.kernels.begin(&keys);
         self.kernels.finish(batch)?;
@@ -103,7 +103,7 @@ impl GpuTracer {
     /// How many pipelines are not there that such a frame would run in a window; for tests. Errors: as
     /// `Renderer::render`.
     pub fn missing_on_screen(&self, scene: &Scene, request: &FrameRequest) -> Result<usize> {
-        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::SCREEN)?.kernels()).len())
+        Ok(self.kernels.missing(&self.planner().set_up(scene, request, PixelTarget::SCREEN)?.kernels()).len())
     }
 
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as
@@ -145,13 +145,19 @@ impl GpuTracer {
             FrameTarget::Image(_, format) => PixelTarget::Image(format),
             FrameTarget::Nowhere => PixelTarget::Packed,
             // One kernel for all of them: others, compiled apart, round a few pixels otherwise on hardware.
-            FrameTarget::Host | FrameTarget::Buffer(..) | FrameTarget::Copied(_) => self.host_pixels(scene),
+            FrameTarget::Host | FrameTarget::Buffer(..) | FrameTarget::Copied(_) => self.planner().host_pixels(scene),
         };
         let delivery = Delivery::of(target);
-        let mut setup = self.set_up(scene, request, kind)?;
-        let beside = of_outputs
-            .as_ref()
-            .map(|scene| self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured)));
+        let mut setup = self.planner().set_up(scene, request, kind)?;
+        let beside = of_outputs.as_ref().map(|scene| {
+            BesideSetup::new(
+                &self.planner(),
+                &self.device,
+                scene,
+                request,
+                (outputs, Some(&setup).filter(|_| pictured)),
+            )
+        });
         let beside = beside.transpose()?;
         let mut needed = if pictured { setup.kernels() } else { Vec::new() };
         needed.extend(scene.shown_picture().into_iter().flat_map(|picture| level_kernels(&self.device, picture)));

@@ -5,25 +5,25 @@
 
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::passes::picture::RecordConsumer;
 use crate::gpu::frame::plan::setup::Setup;
 use crate::gpu::frame::plan::tiles::{Budget, TilePlan};
-use crate::gpu::frame::resources::frame_buffers::{CachedUniform, FrameBuffers, Size};
+use crate::gpu::frame::resources::frame_buffers::Size;
+use crate::gpu::frame::resources::output_buffers::OutputBuffers;
 use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::frame::uniforms::frame::pass_of;
-use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
+use crate::gpu::frame::uniforms::outputs::OutputsUniform;
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::stage::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordSource};
-use crate::gpu::lens::records::{RecordStages, STEP_SUM, Shared};
-use crate::scene::output::MOST_OUTPUTS;
+use crate::gpu::lens::records::{RecordStages, STEP_SUM};
+use crate::gpu::lens::traced::Shared;
 use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, FrameStats, OutputSink, Progress, Tile};
-use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec4};
 use std::collections::VecDeque;
 
 /// Tiles under way at once: one is read while the next is made.
@@ -33,71 +33,6 @@ const MAX_TILE_SIDE: u32 = 4096;
 /// Bytes before the numbers in a tile's staging buffer: the pass's ticks, and the steps of its rays.
 const HEAD: u64 = 256;
 const STEPS: u64 = 64;
-
-/// `Outputs` of shade/outputs.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct OutputsUniform {
-    scene_x: Vec4,
-    scene_y: Vec4,
-    scene_z: Vec4,
-    wanted: [[u32; 4]; MOST_OUTPUTS],
-    /// They change from tile to tile.
-    pub places: [[u32; 4]; MOST_OUTPUTS],
-    count: u32,
-    asks_sky: u32,
-    crossings: u32,
-    padding: u32,
-}
-
-#[cfg(test)]
-pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
-    crate::gpu::kernel::layout::layout!(OutputsUniform as "Outputs": scene_x, scene_y, scene_z, wanted, places,
-        count, asks_sky, crossings, padding)
-}
-
-impl OutputsUniform {
-    pub fn new(scene: &Scene, outputs: &[RayOutput]) -> Self {
-        use crate::scene::RayOutputKind::{Deflection, Sky};
-        let asked = outputs.iter().map(|output| output.crossings()).max().unwrap_or(0);
-        let axes = scene.hole.scene_to_chart().transpose();
-        let column = |v: DVec3, w: f64| v.as_vec3().extend(w as f32);
-        let mut wanted = [[0; 4]; MOST_OUTPUTS];
-        for (to, output) in wanted.iter_mut().zip(outputs) {
-            *to = [output.kind as u32, output.index, output.words() as u32, 0];
-        }
-        Self {
-            scene_x: column(axes.x_axis, scene.hole.mass),
-            scene_y: column(axes.y_axis, 0.0),
-            scene_z: column(axes.z_axis, 0.0),
-            wanted,
-            places: [[0; 4]; MOST_OUTPUTS],
-            count: outputs.len().min(MOST_OUTPUTS) as u32,
-            asks_sky: u32::from(outputs.iter().any(|output| matches!(output.kind, Sky | Deflection))),
-            crossings: asked.min(scene.quality.max_disk_order + 1),
-            padding: 0,
-        }
-    }
-
-    /// The places of a tile's numbers in one buffer: all of the first output, then all of the second.
-    fn packed(mut self, tile: Tile) -> Self {
-        let mut first = 0;
-        for (place, [_, _, words, _]) in self.places.iter_mut().zip(self.wanted) {
-            *place = [first, words * tile.width, 0, 0];
-            first += words * tile.width * tile.height;
-        }
-        self
-    }
-}
-
-/// The buffers of outputs; they grow and stay.
-#[derive(Default)]
-pub struct OutputBuffers {
-    pub(in crate::gpu) frame: FrameBuffers,
-    pub(in crate::gpu) uniform: Option<CachedUniform>,
-    /// A tile's numbers for the host, of outputs beside a picture ([`crate::gpu::frame::passes::outputs_beside`]).
-    pub(in crate::gpu) packed: Option<Buffer>,
-}
 
 /// A tile that has been submitted.
 struct OutputTile {
@@ -112,18 +47,6 @@ struct OutputTile {
 struct OutputStages {
     records: RecordStages,
     consumer: RecordConsumer,
-}
-
-impl Setup {
-    /// Every kernel of outputs.
-    pub(in crate::gpu) fn output_kernels(&self, places: OutputPlaces) -> Vec<KernelKey> {
-        let mut keys = self.record_kernels();
-        let source = self.record_setup.source;
-        let deferred = self.record_setup.deferred_source();
-        let sources = [source].into_iter().chain(deferred);
-        keys.extend(sources.map(|source| KernelKey::outputs(source, self.variants.shade, places)));
-        keys
-    }
 }
 
 impl GpuTracer {
@@ -151,7 +74,7 @@ impl GpuTracer {
         sink: &mut OutputSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
-        let setup = self.set_up(scene, request, PixelTarget::Packed)?;
+        let setup = self.planner().set_up(scene, request, PixelTarget::Packed)?;
         let batch = self.kernels.begin(&setup.output_kernels(OutputPlaces::default()));
         let pixel_bytes = 4 * outputs.iter().map(|output| output.words() as u64).sum::<u64>();
         let ray_steps = match setup.record_setup.source {
@@ -206,30 +129,6 @@ impl GpuTracer {
 }
 
 impl OutputBuffers {
-    fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
-        self.frame.prepare(device, size, setup, software)?;
-        self.uniform(device).map(drop)
-    }
-
-    /// Makes room for so many bytes of a tile's numbers.
-    pub(in crate::gpu) fn make_room(&mut self, device: &Device, bytes: u64) -> Result<()> {
-        if self.packed.as_ref().is_none_or(|packed| packed.size() < bytes) {
-            // The old one goes first: both together need not fit.
-            self.packed = None;
-            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-            self.packed = Some(device.buffer("numbers of outputs", bytes, usage)?);
-        }
-        Ok(())
-    }
-
-    /// The uniform of the outputs.
-    pub(in crate::gpu) fn uniform(&mut self, device: &Device) -> Result<&mut CachedUniform> {
-        match &mut self.uniform {
-            Some(held) => Ok(held),
-            empty => Ok(empty.insert(CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?)),
-        }
-    }
-
     fn stages(
         &mut self,
         device: &Device,
@@ -300,14 +199,6 @@ impl OutputBuffers {
         let submission = device.submit(encoder)?;
         copied.request(device)?;
         Ok(OutputTile { tile, submission, copied, counts, tick_bytes })
-    }
-
-    /// After a submission that failed, nobody knows what the buffers hold.
-    pub fn forget(&mut self) {
-        self.frame.forget();
-        if let Some(uniform) = &mut self.uniform {
-            uniform.forget();
-        }
     }
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The GPU tracer itself: one device, and what frames and rays keep on it.
 
-use super::host_rays::RayBuffers;
-use super::render_outputs::OutputBuffers;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::adapter::Adapter;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::from_scene::Planner;
 use crate::gpu::frame::resources::frame_buffers::FrameBuffers;
+use crate::gpu::frame::resources::output_buffers::OutputBuffers;
+use crate::gpu::frame::resources::ray_buffers::RayBuffers;
 use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::kernel::kernels::{KernelWaits, Kernels};
 use crate::gpu::kernel::key::KernelKey;
@@ -59,6 +60,11 @@ impl GpuTracer {
     pub fn settled_waits(&self) -> KernelWaits {
         self.kernels.settle();
         self.kernels.waits()
+    }
+
+    /// Plans frames for the device.
+    pub(in crate::gpu) fn planner(&self) -> Planner<'_> {
+        Planner { info: &self.adapter.info, maps_storage: self.device.maps_storage() }
     }
 
     pub fn adapter(&self) -> &Arc<Adapter> {

@@ -2,8 +2,9 @@
 //! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
 //! that may come. They end with their owner. Knows no scene.
 
-use super::kernels::{Compiled, PipelineCache};
+use super::cache::PipelineCache;
 use super::key::KernelKey;
+use super::stage::Compiled;
 use crate::deferred::hold;
 use crate::error::Result;
 use crate::gpu::device::process_end;

@@ -3,12 +3,13 @@
 //! and the kernels that make and use them (`emit::half` has the rule). Knows no scene and no light.
 
 use super::pixel_list::PixelList;
-use super::records::{Shared, TracedRecords, pixel_group};
+use super::traced::{Shared, TracedRecords, pixel_group};
 use crate::emit::half::{BLOCK, STENCIL};
 use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::stage::{Stage, list_groups};
 use crate::gpu::kernel::variant::TraceVariant;
 
 /// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.

@@ -7,10 +7,11 @@ use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{self, Kernels, Stage};
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::{KERR_COLUMNS, KERR_PER_OCTAVE};
 use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
+use crate::gpu::kernel::stage::{self, Stage};
 use crate::physics::lens::critical::CRITICAL_NODES;
 use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution};
 use crate::physics::observer::LocalFrame;
@@ -264,7 +265,7 @@ impl KerrStages {
     }
 
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let groups = kernels::pixel_groups(self.size);
+        let groups = stage::pixel_groups(self.size);
         if let Some(trace) = &self.trace_nodes {
             trace.run(pass, None, groups);
         }

@@ -14,7 +14,7 @@ use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::zamo_frequency;
-use crate::sky::StarIndex;
+use crate::sky::StarField;
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -39,7 +39,7 @@ fn profiles() -> &'static [TemperatureProfile] {
 }
 
 fn tables() -> Vec<Table> {
-    let light = StarIndex::shared().expect("an index").light_tables().collect::<Vec<_>>();
+    let light = StarField::catalogue().expect("an index").light_tables().collect::<Vec<_>>();
     let rows = profiles().iter().flat_map(profile_row).collect::<Vec<_>>();
     let mut tables = scenes::tables();
     tables.push(Table { name: "light_tables", bytes: bytemuck::cast_slice(&light).to_vec() });

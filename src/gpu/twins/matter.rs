@@ -22,7 +22,7 @@ use crate::physics::geodesic::State;
 use crate::physics::integrator::Quintic;
 use crate::physics::orbit::{horizon_outer, isco};
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
-use crate::sky::StarIndex;
+use crate::sky::StarField;
 
 const HOOKS: &str = "
 @group(1) @binding(13) var<storage, read> light_tables: array<vec4<f32>>;
@@ -36,7 +36,7 @@ fn out_place(p: Place) { out4(vec4<f32>(p.sigma, p.delta, p.big_a, p.lapse)); ou
 const PLACE: usize = 23;
 
 fn tables() -> Vec<Table> {
-    let light = StarIndex::shared().expect("an index").light_tables().collect::<Vec<_>>();
+    let light = StarField::catalogue().expect("an index").light_tables().collect::<Vec<_>>();
     let mut tables = scenes::tables();
     tables.push(Table { name: "light_tables", bytes: bytemuck::cast_slice(&light).to_vec() });
     tables

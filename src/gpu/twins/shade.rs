@@ -16,7 +16,7 @@ use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::trace::Fate;
 use crate::scene::View;
 use crate::scene::record::Record;
-use crate::sky::StarIndex;
+use crate::sky::StarField;
 use crate::sky::index::PROFILE_OFFSET;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -81,7 +81,7 @@ fn shader(i: &Inputs, view: u32) -> &'static Shader<'static> {
                 scene.view = view;
                 // They live as long as the test.
                 let scene = Box::leak(Box::new(scene));
-                Shader::new(scene, &known.lens, StarIndex::shared().expect("an index"), false).expect("a shader")
+                Shader::new(scene, &known.lens, StarField::catalogue().expect("an index"), false).expect("a shader")
             })
         });
         made.collect()
@@ -173,7 +173,7 @@ fn value(i: &Inputs, o: &mut Outputs) {
 }
 
 fn images() -> Vec<Image> {
-    let index = StarIndex::shared().expect("an index");
+    let index = StarField::catalogue().expect("an index");
     let mut light = index.light_tables().collect::<Vec<_>>();
     let profile = TemperatureProfile::new(0.0);
     light[PROFILE_OFFSET..].iter_mut().zip(profile_row(&profile)).for_each(|(out, entry)| *out = entry);

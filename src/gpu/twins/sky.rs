@@ -4,12 +4,12 @@
 use super::inputs::Inputs;
 use super::run::{Image, Table};
 use super::{Group, ROUNDING, SAME, twin};
-use crate::gpu::frame::resources::sky_maps::{level_place, texture_height};
+use crate::gpu::frame::resources::sky_texture::{level_place, texture_height};
 use crate::gpu::kernel::slots::SKY_MAP;
 use crate::random::mix;
 use crate::sky::filter;
 use crate::sky::index::{STAR_LEVELS, cell_of, level_for, margin, side};
-use crate::sky::{SkyMap, StarIndex, shifted_map_light, stars, under_grid};
+use crate::sky::{SkyMap, StarField, shifted_map_light, stars, under_grid};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -70,7 +70,7 @@ pub fn map_image(name: &'static str, map: &SkyMap) -> Image {
 }
 
 fn tables() -> Vec<Table> {
-    let index = StarIndex::shared().expect("an index");
+    let index = StarField::catalogue().expect("an index");
     let light = index.light_tables().collect::<Vec<_>>();
     let cells = index.cell_tables().collect::<Vec<_>>();
     vec![
@@ -103,7 +103,7 @@ fn any_pixel(i: &mut Inputs) {
 
 /// A pixel beside a star.
 fn starry_pixel(i: &mut Inputs) {
-    let index = StarIndex::shared().expect("an index");
+    let index = StarField::catalogue().expect("an index");
     let number = 2 * i.random.below(index.stars.len() as u32 / 2) as usize;
     let star = index.stars[number];
     let star = DVec3::new(star[0].into(), star[1].into(), star[2].into()).normalize();
@@ -183,7 +183,7 @@ pub fn group() -> Group {
             |i| {
                 i.direction();
             },
-            |i, o| o.put(StarIndex::shared().expect("an index").mean_sky_density(i.v3(0))),
+            |i, o| o.put(StarField::catalogue().expect("an index").mean_sky_density(i.v3(0))),
             ROUNDING,
         ),
         twin(
@@ -193,7 +193,7 @@ pub fn group() -> Group {
             starry_pixel,
             |i, o| {
                 let (d, dx, dy) = pixel(i);
-                let index = StarIndex::shared().expect("an index");
+                let index = StarField::catalogue().expect("an index");
                 o.all(index.star_light(d, [dx, dy], i.x(9), i.x(10), LEAST_PATCH), 1e-6);
             },
             // Places are known to 6e-8 rad: 1e-3 of the finest pixel here.

@@ -2,8 +2,8 @@
 //! Several float images as the named channels of one OpenEXR part, as compositing programs read layers: scan lines,
 //! ZIP, and attributes that say how it was made. Knows no scenes.
 
+use super::layer::{Attribute, Layer};
 use super::support::io_error;
-use super::{Attribute, Layer};
 use crate::error::{Error, Result};
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::exr::block;

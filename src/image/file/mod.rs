@@ -4,21 +4,23 @@
 //! own; `support` holds what they share: limits, errors, memory. Decoders and encoders run on a thread of their own:
 //! see `support::on_own_thread`.
 
-#[cfg(feature = "exr")]
-mod exr;
+mod layer;
+mod support;
 #[cfg(feature = "exr")]
 mod layers;
-mod load;
 mod loaded;
+mod replace;
+#[cfg(feature = "exr")]
+mod exr;
 mod pam;
 mod png;
 mod pnm;
-mod replace;
+mod load;
 mod save;
-mod support;
 #[cfg(test)]
 mod tests;
 
+pub use layer::{Attribute, Layer};
 pub use load::{decode_png, load};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
-pub use save::{Attribute, Layer, save, save_layers};
+pub use save::{save, save_layers};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Writing image files: the kind of file that goes with a path and a format.
 
+use super::layer::{Attribute, Layer};
 use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};
 use crate::error::{Error, Result};
@@ -50,20 +51,6 @@ pub fn save(image: &ImageRef<'_>, path: &Path) -> Result<()> {
         })
     };
     on_own_thread(write).map_err(|error| about("write", path, &error))
-}
-
-/// An image as layers of a file have it.
-pub struct Layer<'a> {
-    /// The channels' names, as many as a pixel has values.
-    pub channels: Vec<String>,
-    pub image: ImageRef<'a>,
-}
-
-/// A value of a file's attribute.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Attribute {
-    Number(f64),
-    Text(String),
 }
 
 /// Writes float images of one size to one `.exr` file, each channel by its name, with attributes. It appears as in

@@ -7,10 +7,13 @@
 //! rays that part never meet again: for each angle to be swept there is exactly one ray, found by bracketing (`plane`).
 //! With spin that ray is followed while the spin grows from 0 (`path`), by Newton's method with the integrator itself.
 
-mod path;
-mod plane;
 mod shooting;
+mod plane;
+mod spin;
 mod winding;
+mod path;
+#[cfg(test)]
+mod tests;
 
 use super::geodesic::{Constants, State};
 use super::observer::LocalFrame;
@@ -141,6 +144,3 @@ fn beam_area(frame: &LocalFrame, aim: &Aim, flight: &Flight, at: &LocalFrame, or
 fn sigma_delta(a: f64, r: f64) -> f64 {
     (r - horizon_outer(a)) * (r - super::orbit::horizon_inner(a))
 }
-
-#[cfg(test)]
-mod tests;

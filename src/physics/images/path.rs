@@ -3,9 +3,9 @@
 //! from the horizon. Where that fails, on the caustics that a spinning hole has, the point is approached from beside.
 
 use super::shooting::{Aim, COARSE, Effort, Target, bring, fine};
+use super::spin::{BESIDE, spun_way};
 use super::{plane, winding};
 use crate::physics::observer::LocalFrame;
-use crate::physics::orbit::horizon_outer;
 use glam::{DQuat, DVec3};
 
 /// Newton's method on the way, and at its end.
@@ -22,9 +22,6 @@ const SHORTEST: f64 = 1e-5;
 
 /// Most stretches of a way.
 const MOST_STRETCHES: usize = 300;
-
-/// Turns about the spin axis and towards it, radians, of the places that a point is approached from.
-pub const BESIDE: [[f64; 2]; 3] = [[0.35, 0.1], [-0.35, -0.1], [0.9, 0.3]];
 
 /// The ray to `point` after `order` half turns, for a spinning hole.
 pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
@@ -51,17 +48,6 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
 fn finished(frame: &LocalFrame, point: DVec3, aim: Aim, order: u32) -> Option<Aim> {
     let target = Target::new(point);
     bring(frame, &target, aim, order, &at_the_end(order, &target)).map(|(aim, _)| aim)
-}
-
-/// Observer and point at a share `s` of the hole's spin, as far from the horizon.
-pub fn spun_way(frame: &LocalFrame, point: DVec3, s: f64) -> Option<(LocalFrame, Target)> {
-    let (n, r) = (point.normalize(), point.length());
-    let out = horizon_outer(s * frame.a) - horizon_outer(frame.a);
-    let mut turned = LocalFrame::new(s * frame.a, frame.e_r * (frame.r + out)).ok()?;
-    // The axes are the frame's own to the last digit, on the axis too.
-    (turned.e_r, turned.e_theta, turned.e_phi) = (frame.e_r, frame.e_theta, frame.e_phi);
-    (turned.sin, turned.cos) = (frame.sin, frame.cos);
-    Some((turned, Target::new(n * (r + out))))
 }
 
 /// The ray that the one without spin becomes.

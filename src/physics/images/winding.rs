@@ -9,9 +9,9 @@
 //! followed by its own length (Keller 1977, in Applications of
 //! Bifurcation Theory), which passes such turns.
 
-use super::path::{BESIDE, spun_way};
 use super::plane;
 use super::shooting::{Aim, Flight, Target, fine};
+use super::spin::{BESIDE, spun_way};
 use crate::physics::geodesic::Constants;
 use crate::physics::observer::LocalFrame;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};

@@ -9,15 +9,14 @@
 
 pub mod coordinate;
 pub mod critical;
-pub mod kerr;
-pub mod plane;
 pub mod schwarzschild;
 pub mod table;
+pub mod plane;
+pub mod kerr;
+#[cfg(test)]
+mod tests;
 
 pub use coordinate::LENS;
 pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
 pub use table::{Crossing, SchwarzschildLens, SchwarzschildLookup};
-
-#[cfg(test)]
-mod tests;

@@ -5,8 +5,7 @@
 
 use super::parts::VulkanParts;
 use crate::gpu::device::external::TargetShape;
-use crate::gpu::device::handover::TargetRead;
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use crate::gpu::device::target::{GpuTarget, TargetRead, TargetResource};
 use ash::vk;
 use ash::vk::Handle;
 use wgpu::hal::api::Vulkan;

@@ -5,7 +5,7 @@
 use crate::error::{Error, ErrorKind, Result};
 
 /// A copy of a descriptor of the host's, closed when it is dropped unless the driver has it.
-pub(super) struct CopiedDescriptor {
+pub(in crate::gpu) struct CopiedDescriptor {
     number: i32,
     of: i32,
 }
@@ -60,7 +60,7 @@ fn stat(fd: i32) -> std::io::Result<libc::stat> {
 
 /// The kind of file that a driver passes something as, by a descriptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FileKind {
+pub(in crate::gpu) struct FileKind {
     format: libc::mode_t,
     /// The device that a device's file is; the file system that another one is on.
     device: libc::dev_t,
@@ -87,7 +87,7 @@ impl FileKind {
 /// `None` where the driver's kind is not known.
 ///
 /// Errors: INVALID_ARGUMENT.
-pub(super) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<()> {
+pub(in crate::gpu) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<()> {
     match (FileKind::of(fd), own) {
         (Some(found), Some(own)) if found != own => {
             Err(Error::argument(format!("handle fd {fd} is no {what} of this driver: it is another kind of file")))
@@ -98,7 +98,7 @@ pub(super) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<(
 
 /// Errors: INVALID_ARGUMENT for a descriptor that cannot be memory. (llvmpipe's is a regular file; it reads from any,
 /// and waits for ever for a pipe's bytes.)
-pub(super) fn check_descriptor(fd: i32, size: u64, llvmpipe: bool) -> Result<()> {
+pub(in crate::gpu) fn check_descriptor(fd: i32, size: u64, llvmpipe: bool) -> Result<()> {
     let found = stat(fd).map_err(|error| Error::argument(format!("handle fd is {fd}, which is not open: {error}")))?;
     let kind = found.st_mode & libc::S_IFMT;
     if [libc::S_IFIFO, libc::S_IFSOCK, libc::S_IFDIR].contains(&kind) || (llvmpipe && kind != libc::S_IFREG) {

@@ -12,14 +12,14 @@ use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::CreateDeviceCallback;
 
 /// The extensions that bhr has on, where a device has them, beside wgpu's.
-pub(super) const WANTED: [&CStr; 3] =
+pub(in crate::gpu) const WANTED: [&CStr; 3] =
     [khr::external_semaphore_fd::NAME, ext::queue_family_foreign::NAME, ext::external_memory_host::NAME];
 
 /// How images of bhr's are made that others import: kernels write them or a copy fills them, and hosts sample, copy, or
 /// view them in another format.
-pub(super) const IMAGE_FLAGS: vk::ImageCreateFlags = vk::ImageCreateFlags::MUTABLE_FORMAT;
+pub(in crate::gpu) const IMAGE_FLAGS: vk::ImageCreateFlags = vk::ImageCreateFlags::MUTABLE_FORMAT;
 /// How buffers of bhr's are made.
-pub(super) const BUFFER_USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
+pub(in crate::gpu) const BUFFER_USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
         | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
         | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
@@ -27,18 +27,18 @@ pub(super) const BUFFER_USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from
 
 /// The Vulkan of a wgpu device: valid as long as that is.
 pub struct VulkanParts {
-    pub(super) instance: ash::Instance,
-    pub(super) device: ash::Device,
-    pub(super) physical: vk::PhysicalDevice,
-    pub(super) family: u32,
-    pub(super) memory_fd: Option<khr::external_memory_fd::Device>,
-    pub(super) semaphore_fd: Option<khr::external_semaphore_fd::Device>,
-    pub(super) host_memory: Option<ext::external_memory_host::Device>,
+    pub(in crate::gpu) instance: ash::Instance,
+    pub(in crate::gpu) device: ash::Device,
+    pub(in crate::gpu) physical: vk::PhysicalDevice,
+    pub(in crate::gpu) family: u32,
+    pub(in crate::gpu) memory_fd: Option<khr::external_memory_fd::Device>,
+    pub(in crate::gpu) semaphore_fd: Option<khr::external_semaphore_fd::Device>,
+    pub(in crate::gpu) host_memory: Option<ext::external_memory_host::Device>,
     /// The most that a timeline may grow at once.
-    pub(super) timeline_step: u64,
+    pub(in crate::gpu) timeline_step: u64,
     /// The alignment of a pointer of the host's.
-    pub(super) pointer_alignment: u64,
-    pub(super) largest_image: u32,
+    pub(in crate::gpu) pointer_alignment: u64,
+    pub(in crate::gpu) largest_image: u32,
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
     pub(in crate::gpu) llvmpipe: bool,
     /// The kinds of file that the driver passes memory and semaphores as, once that was asked.
@@ -119,7 +119,7 @@ impl VulkanParts {
     }
 
     /// Whether images of a kind can be exported and imported by a handle.
-    pub(super) fn image_sharing(
+    pub(in crate::gpu) fn image_sharing(
         &self,
         format: vk::Format,
         usage: vk::ImageUsageFlags,
@@ -146,7 +146,7 @@ impl VulkanParts {
     }
 
     /// Whether the device makes images of a kind at all.
-    pub(super) fn has_images(
+    pub(in crate::gpu) fn has_images(
         &self,
         format: vk::Format,
         usage: vk::ImageUsageFlags,
@@ -160,7 +160,10 @@ impl VulkanParts {
         .is_ok()
     }
 
-    pub(super) fn buffer_sharing(&self, handle: vk::ExternalMemoryHandleTypeFlags) -> vk::ExternalMemoryFeatureFlags {
+    pub(in crate::gpu) fn buffer_sharing(
+        &self,
+        handle: vk::ExternalMemoryHandleTypeFlags,
+    ) -> vk::ExternalMemoryFeatureFlags {
         let ask = vk::PhysicalDeviceExternalBufferInfo::default().usage(BUFFER_USAGE).handle_type(handle);
         let mut answer = vk::ExternalBufferProperties::default();
         // SAFETY: version 1.2 has the call.
@@ -168,7 +171,7 @@ impl VulkanParts {
         answer.external_memory_properties.external_memory_features
     }
 
-    pub(super) fn shares_semaphores(&self, kind: vk::SemaphoreType) -> bool {
+    pub(in crate::gpu) fn shares_semaphores(&self, kind: vk::SemaphoreType) -> bool {
         let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(kind);
         let ask = vk::PhysicalDeviceExternalSemaphoreInfo::default()
             .handle_type(vk::ExternalSemaphoreHandleTypeFlags::OPAQUE_FD)
@@ -182,7 +185,7 @@ impl VulkanParts {
 
     /// The kind of file that the driver passes memory as; `None` where it passes none.
     #[cfg(unix)]
-    pub(super) fn own_memory(&self) -> Option<FileKind> {
+    pub(in crate::gpu) fn own_memory(&self) -> Option<FileKind> {
         *self.own_files[0].get_or_init(|| {
             let fns = self.memory_fd.as_ref()?;
             let handle = vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD;
@@ -201,7 +204,7 @@ impl VulkanParts {
 
     /// The kind of file that the driver passes semaphores as; `None` where it passes none.
     #[cfg(unix)]
-    pub(super) fn own_semaphore(&self) -> Option<FileKind> {
+    pub(in crate::gpu) fn own_semaphore(&self) -> Option<FileKind> {
         *self.own_files[1].get_or_init(|| {
             let fns = self.semaphore_fd.as_ref()?;
             let handle = vk::ExternalSemaphoreHandleTypeFlags::OPAQUE_FD;
@@ -220,7 +223,7 @@ impl VulkanParts {
     }
 
     /// Bytes of the heap that a memory type lies in; 0 for a type that there is not.
-    pub(super) fn heap_size(&self, memory_type: u32) -> u64 {
+    pub(in crate::gpu) fn heap_size(&self, memory_type: u32) -> u64 {
         // SAFETY: plain values.
         let all = unsafe { self.instance.get_physical_device_memory_properties(self.physical) };
         let kind = all.memory_types_as_slice().get(memory_type as usize);
@@ -228,7 +231,7 @@ impl VulkanParts {
     }
 
     /// The first memory type among `bits` that has `flags`.
-    pub(super) fn memory_type(&self, bits: u32, flags: vk::MemoryPropertyFlags) -> Option<u32> {
+    pub(in crate::gpu) fn memory_type(&self, bits: u32, flags: vk::MemoryPropertyFlags) -> Option<u32> {
         // SAFETY: plain values.
         let types = unsafe { self.instance.get_physical_device_memory_properties(self.physical) };
         let fits = |i: &u32| {
@@ -240,7 +243,7 @@ impl VulkanParts {
 }
 
 /// How images are used: by copies and samplers, and by kernels where the format can be stored to.
-pub(super) fn image_usage(stored: bool) -> vk::ImageUsageFlags {
+pub(in crate::gpu) fn image_usage(stored: bool) -> vk::ImageUsageFlags {
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
     if stored { usage | vk::ImageUsageFlags::STORAGE } else { usage }
 }

@@ -6,18 +6,20 @@
 
 use super::picture::RecordConsumer;
 use crate::error::{Error, Result};
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use crate::gpu::device::target::{GpuTarget, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::from_scene::Planner;
 use crate::gpu::frame::plan::setup::Setup;
 use crate::gpu::frame::plan::target_rows::FrameRows;
-use crate::gpu::frame::render_outputs::{OutputBuffers, OutputsUniform};
 use crate::gpu::frame::resources::frame_buffers::FrameBuffers;
+use crate::gpu::frame::resources::output_buffers::OutputBuffers;
 use crate::gpu::frame::resources::tables::Tables;
-use crate::gpu::frame::tracer::GpuTracer;
+use crate::gpu::frame::uniforms::outputs::OutputsUniform;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordSource};
-use crate::gpu::lens::records::{RecordStages, RecordStore, Shared};
+use crate::gpu::lens::records::{RecordStages, RecordStore};
+use crate::gpu::lens::traced::Shared;
 use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, Tile};
 
@@ -119,40 +121,6 @@ impl Place {
     }
 }
 
-impl GpuTracer {
-    /// The setup of `outputs`; `scene` is `Scene::for_outputs` of them. `picture`: that of the picture beside them;
-    /// `None`: there is none, and the frame's records are those of the outputs. Errors: as `Renderer::render`;
-    /// UNSUPPORTED for targets that kernels do not reach.
-    pub(in crate::gpu) fn set_up_beside(
-        &self,
-        scene: &Scene,
-        request: &FrameRequest,
-        outputs: &[PlacedOutput<'_>],
-        picture: Option<&Setup>,
-    ) -> Result<BesideSetup> {
-        let setup = self.set_up(scene, request, PixelTarget::Packed)?;
-        let mut kinds = OutputPlaces::default();
-        let mut places = Vec::with_capacity(outputs.len());
-        for (kind, (output, to)) in kinds.iter_mut().zip(outputs) {
-            let (place, found) = Place::of(*output, *to)?;
-            places.push(place);
-            *kind = Some((*output, found));
-        }
-        check_bound(&self.device, &places, setup.record_setup.source)?;
-        let (own, looked_up) = (&setup.record_setup, |setup: &Setup| setup.record_setup.source != RecordSource::Traced);
-        let reads_again = picture.is_none_or(|picture| {
-            let stays = picture.samples == 1 || looked_up(picture);
-            stays && *own == picture.record_setup && setup.uniform.is_same(&picture.uniform)
-        });
-        let own_tables = picture.is_some_and(|picture| {
-            looked_up(picture) && looked_up(&setup) && !own.shares_tables(&picture.record_setup)
-        });
-        let asked = outputs.iter().map(|(output, _)| *output).collect::<Vec<_>>();
-        let uniform = OutputsUniform::new(scene, &asked);
-        Ok(BesideSetup { uniform, kinds, places, reads_again, own_tables, setup })
-    }
-}
-
 /// Errors: UNSUPPORTED for more targets than a kernel of this device binds.
 fn check_bound(device: &Device, places: &[Place], source: RecordSource) -> Result<()> {
     let limits = device.limits();
@@ -174,6 +142,38 @@ fn check_bound(device: &Device, places: &[Place], source: RecordSource) -> Resul
 }
 
 impl BesideSetup {
+    /// The setup of `outputs`; `scene` is `Scene::for_outputs` of them. `picture`: that of the picture beside them;
+    /// `None`: there is none, and the frame's records are those of the outputs. Errors: as `Renderer::render`;
+    /// UNSUPPORTED for targets that kernels do not reach.
+    pub fn new(
+        planner: &Planner<'_>,
+        device: &Device,
+        scene: &Scene,
+        request: &FrameRequest,
+        (outputs, picture): (&[PlacedOutput<'_>], Option<&Setup>),
+    ) -> Result<Self> {
+        let setup = planner.set_up(scene, request, PixelTarget::Packed)?;
+        let mut kinds = OutputPlaces::default();
+        let mut places = Vec::with_capacity(outputs.len());
+        for (kind, (output, to)) in kinds.iter_mut().zip(outputs) {
+            let (place, found) = Place::of(*output, *to)?;
+            places.push(place);
+            *kind = Some((*output, found));
+        }
+        check_bound(device, &places, setup.record_setup.source)?;
+        let (own, looked_up) = (&setup.record_setup, |setup: &Setup| setup.record_setup.source != RecordSource::Traced);
+        let reads_again = picture.is_none_or(|picture| {
+            let stays = picture.samples == 1 || looked_up(picture);
+            stays && *own == picture.record_setup && setup.uniform.is_same(&picture.uniform)
+        });
+        let own_tables = picture.is_some_and(|picture| {
+            looked_up(picture) && looked_up(&setup) && !own.shares_tables(&picture.record_setup)
+        });
+        let asked = outputs.iter().map(|(output, _)| *output).collect::<Vec<_>>();
+        let uniform = OutputsUniform::new(scene, &asked);
+        Ok(Self { uniform, kinds, places, reads_again, own_tables, setup })
+    }
+
     pub fn kernels(&self) -> Vec<KernelKey> {
         self.setup.output_kernels(self.kinds)
     }

@@ -9,12 +9,15 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::plan::setup::{FrameTarget, Setup};
 use crate::gpu::frame::plan::steps::Step;
 use crate::gpu::frame::plan::target_rows::{FrameRows, TilePlace};
-use crate::gpu::frame::resources::frame_buffers::{CachedUniform, FrameBuffers, PIXELS};
+use crate::gpu::frame::resources::cached_uniform::CachedUniform;
+use crate::gpu::frame::resources::frame_buffers::{FrameBuffers, PIXELS};
 use crate::gpu::frame::resources::tables::Tables;
-use crate::gpu::kernel::kernels::{Compiled, Kernels, Stage};
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::stage::{Compiled, Stage};
 use crate::gpu::kernel::variant::RecordSource;
-use crate::gpu::lens::records::{RecordSetup, RecordStages, Shared};
+use crate::gpu::lens::records::{RecordSetup, RecordStages};
+use crate::gpu::lens::traced::Shared;
 use crate::tracer::Tile;
 use std::slice;
 

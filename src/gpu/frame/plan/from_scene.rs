@@ -7,7 +7,6 @@ use crate::emit::Emitters;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::gpu::frame::tracer::GpuTracer;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::gpu::frame::uniforms::matter::matter_variant;
@@ -17,10 +16,18 @@ use crate::gpu::lens::records::RecordSetup;
 use crate::physics::trace::Settings;
 use crate::scene::observer::Lens;
 use crate::scene::{KerrThreshold, Lensing, Projection, Region, Scene, View};
-use crate::tracer::{Backend, FrameRequest};
+use crate::tracer::{AdapterInfo, Backend, FrameRequest};
 use glam::DVec3;
 
-impl GpuTracer {
+/// The device, as far as plans depend on it.
+#[derive(Clone, Copy)]
+pub struct Planner<'a> {
+    pub info: &'a AdapterInfo,
+    /// Whether kernels can write buffers that the host maps.
+    pub maps_storage: bool,
+}
+
+impl Planner<'_> {
     /// How pixels for the host's memory, and for buffers that it shares, are written.
     pub(in crate::gpu) fn host_pixels(&self, scene: &Scene) -> PixelTarget {
         if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
@@ -30,14 +37,14 @@ impl GpuTracer {
     /// device of wgpu's runs one thing after another). Other interfaces than Vulkan may keep such memory out of
     /// kernels' reach, or reach it slowly.
     fn maps_pixels(&self, scene: &Scene) -> bool {
-        let info = &self.adapter.info;
+        let info = self.info;
         let pays = info.backend == Backend::Vulkan && !info.software;
-        self.device.maps_storage() && scene.quality.mapped_pixels.unwrap_or(pays)
+        self.maps_storage && scene.quality.mapped_pixels.unwrap_or(pays)
     }
 
     /// Whether a sampler filters sky maps. On software drivers it costs more than to read the texels.
-    pub(in crate::gpu) fn samples_maps(&self, scene: &Scene) -> bool {
-        scene.quality.map_sampler.unwrap_or(!self.adapter.info.software)
+    fn samples_maps(&self, scene: &Scene) -> bool {
+        scene.quality.map_sampler.unwrap_or(!self.info.software)
     }
 
     pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
@@ -50,7 +57,7 @@ impl GpuTracer {
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
-        let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
+        let shares = scene.quality.shares_kernels.unwrap_or(!self.info.software);
         let film_variant = FilmVariant::new(&scene.film, scene.view, request.format, target);
         let formula = lens.mapping.projection;
         let (usual_view, usual_film) = (formula == Projection::Perspective, film_variant.is_usual());
@@ -123,7 +130,7 @@ impl GpuTracer {
             },
             half: source == RecordSource::Traced && scene.half_resolution().is_some(),
             // wgpu makes no array texture of one layer on GL.
-            crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
+            crossings: if self.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             observer,
             contents: KerrContents {
                 orders: if plane_u.is_some() { settings.max_crossings as u32 } else { 0 },

@@ -6,7 +6,7 @@ use super::target_rows::FrameRows;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use crate::gpu::device::target::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::FrameUniform;

@@ -3,7 +3,7 @@
 //! of a whole frame. Plain numbers.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::device::sharing::GpuTarget;
+use crate::gpu::device::target::GpuTarget;
 use crate::gpu::device::wgpu_device::Device;
 use crate::tracer::Tile;
 

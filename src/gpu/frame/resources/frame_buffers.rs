@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The buffers that frames of one size share: made, grown, and written with what all tiles share. Knows no kernels.
 
+use super::bloom_textures::BloomBuffers;
+use super::cached_uniform::CachedUniform;
+use super::edge_list::EdgeList;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::gpu::device::buffer::{Buffer, uniform_stride};
@@ -8,8 +11,6 @@ use crate::gpu::device::readback::Readback;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::frame::passes::bloom::BloomBuffers;
-use crate::gpu::frame::passes::refine::EdgeList;
 use crate::gpu::frame::plan::setup::Setup;
 use crate::gpu::frame::plan::tiles::MAX_BATCH;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
@@ -62,12 +63,6 @@ impl Default for MappedStaging {
     }
 }
 
-/// A buffer of uniforms, and the bytes that were last written to it, so that the same bytes are not written again.
-pub struct CachedUniform {
-    pub buffer: Buffer,
-    bytes: Vec<u8>,
-}
-
 /// The buffers and textures that depend on a frame's size.
 pub struct SizedBuffers {
     size: Size,
@@ -90,36 +85,6 @@ impl Size {
         (0..2).all(|i| self.tile[i] >= other.tile[i])
             && self.pixel_bytes >= other.pixel_bytes
             && (self.several_samples || !other.several_samples)
-    }
-}
-
-impl CachedUniform {
-    pub fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
-        Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
-    }
-
-    /// The same for kernels that have uniforms enough.
-    pub fn in_storage(device: &Device, label: &str, size: u64) -> Result<Self> {
-        Ok(Self { buffer: device.buffer(label, size, Usage::STORAGE | Usage::COPY_DST)?, bytes: Vec::new() })
-    }
-
-    /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
-    pub fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
-        if self.bytes != bytes {
-            self.bytes.clear();
-            device.write(&self.buffer, 0, bytes)?;
-            self.bytes.extend_from_slice(bytes);
-        }
-        Ok(())
-    }
-
-    pub fn buffer(&self) -> &Buffer {
-        &self.buffer
-    }
-
-    /// After a submission that failed, nobody knows what the buffer holds.
-    pub fn forget(&mut self) {
-        self.bytes.clear();
     }
 }
 

@@ -3,18 +3,18 @@
 //! from a target that the host shares. Knows no frames.
 
 use super::binding_parts::{Band, Reach, Rows, bands};
-use super::frame_buffers::CachedUniform;
+use super::cached_uniform::CachedUniform;
 use crate::allocate::with_room;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::external::{TargetOrigin, TargetShape};
-use crate::gpu::device::handover::TargetRead;
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use crate::gpu::device::target::{GpuTarget, TargetRead, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::slots::OCCLUDER;
+use crate::gpu::kernel::stage::Stage;
 use crate::image::PixelFormat;
 use crate::scene::{Distances, Scene};
 use bytemuck::{Pod, Zeroable};

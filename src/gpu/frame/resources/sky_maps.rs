@@ -3,6 +3,7 @@
 //! it is another.
 
 use super::sky_target::{SkyFetch, SkyTarget};
+use super::sky_texture::{MapTexture, level_place, texture_height};
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
@@ -14,13 +15,6 @@ use std::sync::{Arc, Weak};
 
 /// Bytes that are written in one submission, about: until it has run, the driver keeps a copy of them.
 const BAND_BYTES: usize = 16 << 20;
-
-/// A map on the device.
-pub struct MapTexture {
-    pub texture: Texture,
-    /// Size of its finest level.
-    pub finest: [u32; 2],
-}
 
 pub struct SkyMaps {
     milky_way: Option<MapTexture>,
@@ -153,34 +147,4 @@ fn upload(device: &Device, map: &SkyMap, for_sampler: bool) -> Result<MapTexture
         }
     }
     Ok(MapTexture { texture, finest })
-}
-
-/// The height of the texture of a map whose finest level has this size.
-pub(in crate::gpu) fn texture_height([width, height]: [u32; 2]) -> u32 {
-    if width > 1 { height + (height / 2).max(1) } else { height }
-}
-
-/// Where level `number` begins. Each is at most half as wide as the one before, so that it ends before the next begins.
-pub(in crate::gpu) fn level_place([width, height]: [u32; 2], number: u32) -> [u32; 2] {
-    if number == 0 { [0, 0] } else { [width - (width >> (number - 1)), height] }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn levels_do_not_overlap() {
-        for size in [[1, 1], [2, 1], [7, 7], [64, 32], [301, 299], [16384, 8192]] {
-            let map_levels = 32 - u32::leading_zeros(size[0]);
-            let mut end = 0;
-            for number in 1..map_levels {
-                let [left, top] = level_place(size, number);
-                let [width, height] = size.map(|side: u32| (side >> number).max(1));
-                assert!(left >= end && top >= size[1] && top + height <= texture_height(size), "{size:?} {number}");
-                end = left + width;
-                assert!(end <= size[0], "{size:?} {number}");
-            }
-        }
-    }
 }

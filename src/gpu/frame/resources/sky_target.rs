@@ -4,18 +4,18 @@
 //! is made by looking its light up. Knows no frames.
 
 use super::binding_parts::{Band, Reach, Rows, Window, bands};
-use super::frame_buffers::CachedUniform;
-use super::sky_maps::{MapTexture, level_place, texture_height};
+use super::cached_uniform::CachedUniform;
+use super::sky_texture::{MapTexture, level_place, texture_height};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::external::{HOST_POINTER, TargetOrigin, TargetShape};
-use crate::gpu::device::handover::TargetRead;
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use crate::gpu::device::target::{GpuTarget, TargetRead, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::SKY_PARTS;
 use crate::gpu::kernel::slots::SKY_MAP;
+use crate::gpu::kernel::stage::Stage;
 use crate::gpu::kernel::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_HALF, SKY_SOURCE_LEVEL};
 use crate::image::PixelFormat;
 use crate::scene::SkyPicture;

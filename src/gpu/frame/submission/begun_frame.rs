@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::handover::Handover;
 use crate::gpu::device::semaphores::FrameSync;
-use crate::gpu::device::sharing::GpuTarget;
+use crate::gpu::device::target::GpuTarget;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::passes::outputs_beside::Beside;
 use crate::gpu::frame::passes::picture::Stages;

@@ -16,11 +16,13 @@
 //! its azimuth and its delay in a form regular at infinity (`regular_delay`). Tables hold them in f32 and by fours, as
 //! interpolation loads them (`Grid::pack`).
 
-mod cells;
 mod grid;
+mod cells;
 mod lookup;
 mod node;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use grid::{BEYOND_INFINITY, INWARD, ROWS_ABOVE, ROWS_BELOW};
 pub use grid::{
@@ -31,6 +33,3 @@ pub use lookup::{Crossing, GridStep, KerrLookup, Sky};
 #[cfg(test)]
 pub(crate) use node::regular_delay;
 pub use table::KerrLens;
-
-#[cfg(test)]
-mod tests;

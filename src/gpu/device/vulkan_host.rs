@@ -3,12 +3,12 @@
 //! wgpu. wgpu takes for granted what a device of its own would have, and finds out by a missing function, which ends
 //! the process; so everything that can be asked is asked first.
 
-use super::failed;
-use super::parts::{WANTED, ids};
+use super::adapter::{Adapter, device_descriptor};
+use super::driver_lock;
+use super::external::{AdapterIds, HostDevice, HostVulkan, ReleaseGuard, Requirements};
+use super::vulkan::failed;
+use super::vulkan::parts::{WANTED, ids};
 use crate::error::{Error, Result};
-use crate::gpu::device::adapter::{Adapter, device_descriptor};
-use crate::gpu::device::driver_lock;
-use crate::gpu::device::external::{AdapterIds, HostDevice, HostVulkan, ReleaseGuard, Requirements};
 use ash::vk::Handle;
 use ash::{khr, vk};
 use std::ffi::{CStr, c_char, c_void};

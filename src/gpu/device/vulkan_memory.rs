@@ -2,16 +2,14 @@
 //! The memory of targets: made and exported, imported from the host, or a VkImage of the host's own. wgpu owns what is
 //! made here and frees it after its last use on the GPU.
 
+use super::external::{HOST_POINTER, MemoryInfo, NOT_RUN, OPAQUE_FD, ReleaseGuard, TargetOrigin, TargetShape};
+use super::target::{GpuTarget, TargetResource};
 #[cfg(unix)]
-use super::descriptor::{CopiedDescriptor, check_descriptor, check_kind};
-use super::failed;
-use super::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
+use super::vulkan::descriptor::{CopiedDescriptor, check_descriptor, check_kind};
+use super::vulkan::failed;
+use super::vulkan::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
+use super::wgpu_device::Device;
 use crate::error::{Error, Result};
-use crate::gpu::device::external::{
-    HOST_POINTER, MemoryInfo, NOT_RUN, OPAQUE_FD, ReleaseGuard, TargetOrigin, TargetShape,
-};
-use crate::gpu::device::sharing::{GpuTarget, TargetResource};
-use crate::gpu::device::wgpu_device::Device;
 use crate::image::PixelFormat;
 use ash::vk;
 use ash::vk::Handle;
@@ -287,6 +285,19 @@ impl VulkanParts {
 }
 
 impl Device {
+    /// A target of this device, which counts its memory.
+    fn new_target(
+        &self,
+        resource: TargetResource,
+        shape: TargetShape,
+        memory: MemoryInfo,
+        raw: [u64; 2],
+        leaves: bool,
+    ) -> GpuTarget {
+        let counted = self.counted(memory.allocation_size);
+        GpuTarget::new((counted, self.bindings.clone()), resource, shape, memory, raw, leaves)
+    }
+
     /// A target. Errors: UNSUPPORTED for what the device cannot make or share; INVALID_ARGUMENT for memory that does
     /// not fit; OUT_OF_MEMORY; DEVICE_LOST.
     pub(in crate::gpu) fn vulkan_target(
@@ -340,7 +351,7 @@ impl Device {
         })?;
         let raw = [raw, memory.as_raw()];
         let leaves = shape.handle == OPAQUE_FD;
-        Ok(GpuTarget::new(self, TargetResource::Buffer(buffer), shape, info, raw, leaves))
+        Ok(self.new_target(TargetResource::Buffer(buffer), shape, info, raw, leaves))
     }
 
     fn own_image(&self, parts: &VulkanParts, shape: TargetShape, origin: TargetOrigin) -> Result<GpuTarget> {
@@ -405,7 +416,7 @@ impl Device {
         let (raw, memory) = made.pass_on();
         let resource = self.wrapped(raw, &shape, written, None, hal::vulkan::TextureMemory::Dedicated(memory))?;
         let leaves = shape.handle == OPAQUE_FD;
-        Ok(GpuTarget::new(self, resource, shape, info, [raw, memory.as_raw()], leaves))
+        Ok(self.new_target(resource, shape, info, [raw, memory.as_raw()], leaves))
     }
 
     fn host_image(
@@ -438,7 +449,7 @@ impl Device {
         let resource = self.wrapped(raw, &shape, written, Some(release), hal::vulkan::TextureMemory::External)?;
         let info =
             MemoryInfo { vk_format: vk_format(shape.format).as_raw() as u32, vk_usage: usage, ..Default::default() };
-        Ok(GpuTarget::new(self, resource, shape, info, [raw, 0], false))
+        Ok(self.new_target(resource, shape, info, [raw, 0], false))
     }
 
     /// A VkImage as wgpu's texture. `release`: it is the host's.

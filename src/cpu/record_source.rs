@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Where a frame's records come from: traced, or looked up in the tables of a lens.
+
+use super::lens::LensLookup;
+use super::record::Recorder;
+
+/// The maker of a frame's records.
+pub enum RecordSource<'a> {
+    Traced(Recorder<'a>),
+    LensLookup(LensLookup<'a>),
+}
