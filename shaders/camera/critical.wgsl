@@ -18,7 +18,7 @@ fn potential_minimum(c: Constants) -> f32 {
 
 // 0 on the curve, positive where rays escape. `n`: look direction in the local frame.
 fn curve_level(n: vec3<f32>) -> f32 {
-    if SPINNING && n.x < 0.0 && not_inlined(bitcast<u32>(frame.critical.z)) != 0u {
+    if SPINNING && n.x < 0.0 && not_inlined(frame.critical_by_margin) != 0u {
         let c = begin_local(n).c;
         let u = potential_minimum(c);
         // 1 - P / E^2.

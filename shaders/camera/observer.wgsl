@@ -34,8 +34,8 @@ fn aberrate(look: vec3<f32>) -> LookDirection {
     if !MOVING {
         return LookDirection(look, look, 1.0);
     }
-    let beta = frame.beta.xyz;
-    let gamma = frame.beta.w;
+    let beta = frame.beta;
+    let gamma = frame.gamma;
     let along = dot(beta, look);
     // In f32 an observer that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
     let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
@@ -49,8 +49,8 @@ fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     if !MOVING {
         return change;
     }
-    let beta = frame.beta.xyz;
-    let gamma = frame.beta.w;
+    let beta = frame.beta;
+    let gamma = frame.gamma;
     let turn = change - seen.look * dot(seen.look, change);
     let along = dot(beta, turn);
     return seen.frequency_ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
@@ -82,48 +82,48 @@ fn polar_momentum(begin: RayBegin, ratio: f32) -> f32 {
 }
 
 fn constants(energy: f32, angular_momentum: f32, carter: f32, k: f32, nu_local: f32) -> Constants {
-    let a = frame.hole.x;
+    let a = frame.spin;
     let a2e2 = a * a * energy * energy;
     let b = k - 2.0 * a * angular_momentum * energy + a2e2;
     let scale = max(sqrt(max(k + a2e2, 0.0)), 3.0 * abs(energy));
-    return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.place.x,
-        frame.hole.y, frame.hole.z, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
+    return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.observer_u,
+        frame.r_plus, frame.r_minus, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
 }
 
 // Scaled so that the local observer measures frequency 1: good for every E (geodesic.rs).
 fn begin_zamo(begin: ptr<function, RayBegin>, n: vec3<f32>) {
-    let u = frame.place.x;
-    let s = frame.place.y;
-    let c = frame.place.z;
-    let a = frame.hole.x;
-    let omega = frame.zamo.x;
-    let q = frame.zamo.y;
+    let u = frame.observer_u;
+    let s = frame.observer_sine;
+    let c = frame.observer_cosine;
+    let a = frame.spin;
+    let omega = frame.omega;
+    let q = frame.q;
     let p = -n;
-    let energy = frame.place.w + omega * q * s * p.z;
-    let polar = frame.zamo.z * p.y / u;
+    let energy = frame.lapse + omega * q * s * p.z;
+    let polar = frame.root_sigma * p.y / u;
     let w = q * p.z;
     let carter = polar * polar + c * c * (w * w - a * a * energy * energy);
     let k = polar * polar + w * w - a * a * c * c * energy * energy;
     (*begin).c = constants(energy, s * w, carter, k, 1.0);
     (*begin).carter = carter;
-    (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz,
+    (*begin).state = State(u, frame.root_sigma_d * p.x, frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = true;
 }
 
 // Spin 0: beta_rain = sqrt(2 u) is place.w.
 fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
-    let u = frame.place.x;
-    let beta = frame.place.w;
+    let u = frame.observer_u;
+    let beta = frame.lapse;
     let p = -n;
     let energy = 1.0 + beta * n.x;
     let e = 1.0 / max(energy, 1e-6);
     let polar = p.y * e / u;
     let w = p.z * e / u;
-    let cw = frame.place.z * w;
+    let cw = frame.observer_cosine * w;
     let k = polar * polar + w * w;
     (*begin).carter = polar * polar + cw * cw;
-    (*begin).c = constants(1.0, frame.place.y * w, (*begin).carter, k, e);
+    (*begin).c = constants(1.0, frame.observer_sine * w, (*begin).carter, k, e);
     (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = energy > 0.0;
@@ -132,7 +132,7 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
 // g of the disk's matter for the local frame's observer, of light that crosses the plane at 1/r = u with u' = du
 // (Matter::redshift of src/physics/plunge.rs).
 fn redshift_at(c: Constants, u: f32, du: f32) -> f32 {
-    if u * frame.plunge.x > 1.0 {
+    if u * frame.plunge_isco > 1.0 {
         return c.nu_local / plunging_frequency(c, u, du);
     }
     return redshift_of(c, u);
@@ -140,22 +140,21 @@ fn redshift_at(c: Constants, u: f32, du: f32) -> f32 {
 
 // The frequency that plunging matter measures (Plunge::frequency).
 fn plunging_frequency(c: Constants, u: f32, du: f32) -> f32 {
-    let plunge = frame.plunge;
     let u2 = u * u;
     let x = c.angular_momentum - c.a * c.energy;
-    let w_matter = plunge.y - plunge.z * u2;
+    let w_matter = frame.plunge_energy - frame.plunge_spin_term * u2;
     let w_light = c.energy - c.a * x * u2;
-    let excess = max(plunge.x * u - 1.0, 0.0);
-    let infall = sqrt(2.0 / (3.0 * plunge.x)) * excess * sqrt(excess);
+    let excess = max(frame.plunge_isco * u - 1.0, 0.0);
+    let infall = sqrt(2.0 / (3.0 * frame.plunge_isco)) * excess * sqrt(excess);
     let outwards = (w_matter * w_light + infall * du) / horizon_function(c, u);
-    let inwards = (w_matter * w_matter * c.b * u2 + (1.0 + plunge.w * plunge.w * u2) * du * du)
+    let inwards = (w_matter * w_matter * c.b * u2 + (1.0 + frame.plunge_x * frame.plunge_x * u2) * du * du)
         / (w_matter * w_light - infall * du);
-    return select(inwards, outwards, du >= 0.0) - plunge.w * x * u2;
+    return select(inwards, outwards, du >= 0.0) - frame.plunge_x * x * u2;
 }
 
 // The same, matter being on its circular orbit (physics::orbit::redshift).
 fn redshift_of(c: Constants, u: f32) -> f32 {
-    let v = sign(frame.hole.w) * u * sqrt(u);
+    let v = sign(frame.signed_isco) * u * sqrt(u);
     return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0))
         / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
 }

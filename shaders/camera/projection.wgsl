@@ -72,7 +72,7 @@ fn camera_point(x: f32, y: f32) -> FramePoint {
 }
 
 fn in_frame(p: vec3<f32>) -> vec3<f32> {
-    return frame.right.xyz * p.x + frame.up.xyz * p.y + frame.forward.xyz * p.z;
+    return frame.right * p.x + frame.up.xyz * p.y + frame.forward.xyz * p.z;
 }
 
 fn look_direction(x: f32, y: f32) -> vec3<f32> {
@@ -84,7 +84,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
     let ray = in_frame(p.at);
     let inverse = inverseSqrt(dot(ray, ray));
     // Most of a perspective frame's components are 0, which no compiler may leave out.
-    var dx = frame.right.xyz * p.dx.x;
+    var dx = frame.right * p.dx.x;
     var dy = frame.up.xyz * p.dy.y;
     if !is_perspective() {
         dx = in_frame(p.dx);
@@ -95,7 +95,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
 
 // Whether something is seen at a position: all but what lies outside a fisheye's circle.
 fn has_look_direction(place: vec2<f32>) -> bool {
-    let p = place - 0.5 * frame.size.xy;
+    let p = place - 0.5 * frame.size;
     let radius = 0.5 * min(frame.size.x, frame.size.y);
     return !is_fisheye() || dot(p, p) <= radius * radius;
 }
@@ -109,7 +109,7 @@ fn same_face(x0: f32, x1: f32) -> bool {
 fn fisheye_point(x: f32, y: f32) -> FramePoint {
     let from_centre = vec2<f32>(x - 0.5 * frame.size.x, 0.5 * frame.size.y - y);
     let radius = length(from_centre);
-    let scale = frame.right.w;
+    let scale = frame.pixel_angle;
     let turn = sincos(scale * radius);
     let centre = radius <= 0.0;
     let outward = select(from_centre / max(radius, 1e-30), vec2<f32>(1.0, 0.0), centre);

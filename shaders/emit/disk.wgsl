@@ -34,12 +34,12 @@ fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec
 
 // The share of the light from behind that a crossing hides where the disk's temperature is `profile`.
 fn disk_opacity(crossing: Crossing, profile: f32) -> f32 {
-    return frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
+    return frame.disk_opacity * crossing.share * left_by_edges(crossing.u, profile);
 }
 
 // The light at the angle of cosine `mu`, over that of an isotropic surface of the same flux (thin_disk.rs).
 fn emission_law(mu: f32) -> f32 {
-    if not_inlined(bitcast<u32>(frame.surface.x)) == 0u {
+    if not_inlined(frame.limb_darkened) == 0u {
         return 1.0;
     }
     let x = clamp(mu, 0.0, 1.0) * f32(PROFILE_SIZE - 1u);
@@ -50,21 +50,22 @@ fn emission_law(mu: f32) -> f32 {
 
 // The share of the disk's opacity that its edges leave at 1/r = u (SoftEdges::left).
 fn left_by_edges(u: f32, profile: f32) -> f32 {
-    let edges = frame.soft_edges;
-    let fade = select(1.0, clamp((edges.x - 1.0 / u) * edges.y, 0.0, 1.0), edges.y > 0.0);
+    let outer = frame.soft_outer;
+    let inner = frame.soft_inner;
+    let fade = select(1.0, clamp((outer.x - 1.0 / u) * outer.y, 0.0, 1.0), outer.y > 0.0);
     let squared = profile * profile;
-    let flux = select(1.0, min(squared * squared * edges.w, 1.0), edges.w > 0.0 && u > edges.z);
+    let flux = select(1.0, min(squared * squared * inner.y, 1.0), inner.y > 0.0 && u > inner.x);
     return fade * fade * (3.0 - 2.0 * fade) * flux;
 }
 
 // The disk's temperature at 1/r = u, in that of the hottest ring (ThinDisk::profile).
 fn disk_profile(u: f32) -> f32 {
-    return max(temperature_profile(u), select(0.0, frame.surface.z, u > frame.surface.y));
+    return max(temperature_profile(u), select(0.0, frame.least_profile, u > frame.least_profile_u));
 }
 
 // T(r) / T_max (TemperatureProfile::at).
 fn temperature_profile(u: f32) -> f32 {
-    let root = sqrt(min(abs(frame.hole.w) * u, 1.0));
+    let root = sqrt(min(abs(frame.signed_isco) * u, 1.0));
     let x = sqrt(1.0 - root) * f32(PROFILE_SIZE - 1u);
     let i = min(u32(x), PROFILE_SIZE - 2u);
     let entry = light_table(PROFILE_OFFSET + i);
@@ -74,6 +75,7 @@ fn temperature_profile(u: f32) -> f32 {
 
 // Linear radiance of the opaque, smooth disk where its temperature is `profile`, in that of the hottest ring.
 fn disk_light(profile: f32, shift: Shift) -> vec3<f32> {
-    let temperature = frame.disk.x * profile;
-    return shifted_blackbody(temperature, frame.disk.y, shift.colour, shift.beaming) * frame.disk.w;
+    let temperature = frame.disk_hottest * profile;
+    let light = shifted_blackbody(temperature, frame.disk_log_reference, shift.colour, shift.beaming);
+    return light * frame.disk_brightness;
 }

@@ -76,20 +76,20 @@ fn angular_velocity(a: f32, at: Place, velocity: vec2<f32>) -> f32 {
 
 // The velocity of matter at a place, as the ZAMO there measures it.
 fn flow_velocity(c: Constants, at: Place, matter: Matter) -> vec2<f32> {
-    let sense = matter.reach.w;
+    let sense = matter.sense;
     let spin = sense * c.a;
     var velocity = vec2<f32>(0.0);
-    if (MOTIONS & (1u << MOTION_KEPLERIAN)) != 0u && matter.kind.y == MOTION_KEPLERIAN {
-        velocity = keplerian(c, spin, at, matter.form.w, matter.motion.x, matter.motion.y);
+    if (MOTIONS & (1u << MOTION_KEPLERIAN)) != 0u && matter.motion == MOTION_KEPLERIAN {
+        velocity = keplerian(c, spin, at, matter.isco, matter.law.x, matter.law.y);
     }
-    if (MOTIONS & (1u << MOTION_ANGULAR_MOMENTUM)) != 0u && matter.kind.y == MOTION_ANGULAR_MOMENTUM {
-        velocity = with_angular_momentum(spin, at, matter.motion.x);
+    if (MOTIONS & (1u << MOTION_ANGULAR_MOMENTUM)) != 0u && matter.motion == MOTION_ANGULAR_MOMENTUM {
+        velocity = with_angular_momentum(spin, at, matter.law.x);
     }
-    if (MOTIONS & (1u << MOTION_RIGID)) != 0u && matter.kind.y == MOTION_RIGID {
-        velocity = vec2<f32>(at.around / at.lapse * (matter.motion.x - place_omega(spin, at)), 0.0);
+    if (MOTIONS & (1u << MOTION_RIGID)) != 0u && matter.motion == MOTION_RIGID {
+        velocity = vec2<f32>(at.around / at.lapse * (matter.law.x - place_omega(spin, at)), 0.0);
     }
-    if (MOTIONS & (1u << MOTION_OUTFLOW)) != 0u && matter.kind.y == MOTION_OUTFLOW {
-        velocity = outflow(c, spin, at, matter.motion.x, matter.motion.y);
+    if (MOTIONS & (1u << MOTION_OUTFLOW)) != 0u && matter.motion == MOTION_OUTFLOW {
+        velocity = outflow(c, spin, at, matter.law.x, matter.law.y);
     }
     return vec2<f32>(sense * velocity.x, velocity.y);
 }

@@ -24,17 +24,17 @@ struct Coefficients {
 // `heat`: a factor on the temperature; g = nu(camera) / nu(matter), `shift`: as the effects let it show.
 fn glow_coefficients(matter: Matter, density: f32, heat: f32, r: f32, nu: f32, g: f32, shift: Shift) -> Coefficients {
     let column = density * nu;
-    if POWER_LAW && (!THERMAL || matter.kind.z != 0u) {
+    if POWER_LAW && (!THERMAL || matter.power_law != 0u) {
         let ln_g = log(g);
-        let index = matter.light.y;
+        let index = matter.spectral_index;
         let column_seen = column * shift.beaming * shift.beaming * shift.beaming * pow(shift.colour, index);
-        let seen = min(column_seen, LARGEST_COEFFICIENT) * matter.light.z;
-        return Coefficients(matter.tint.xyz * min(seen, LARGEST_COEFFICIENT),
+        let seen = min(column_seen, LARGEST_COEFFICIENT) * matter.brightness;
+        return Coefficients(matter.tint * min(seen, LARGEST_COEFFICIENT),
             min(column * exp(ln_g * (3.0 + index)), LARGEST_COEFFICIENT),
-            min(matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)), LARGEST_COEFFICIENT));
+            min(matter.absorption * column * exp(ln_g * (ABSORPTION_INDEX + index)), LARGEST_COEFFICIENT));
     }
-    let absorption = min(matter.glow.x * column, LARGEST_COEFFICIENT);
-    let temperature = heat * matter.glow.y * pow(r / matter.glow.z, -matter.glow.w);
-    let rgb = shifted_blackbody(temperature, matter.light.x, shift.colour, shift.beaming);
-    return Coefficients(min(rgb * (matter.light.z * absorption), vec3<f32>(LARGEST_COEFFICIENT)), 0.0, absorption);
+    let absorption = min(matter.absorption * column, LARGEST_COEFFICIENT);
+    let temperature = heat * matter.temperature * pow(r / matter.reference_radius, -matter.temperature_slope);
+    let rgb = shifted_blackbody(temperature, matter.log_reference, shift.colour, shift.beaming);
+    return Coefficients(min(rgb * (matter.brightness * absorption), vec3<f32>(LARGEST_COEFFICIENT)), 0.0, absorption);
 }

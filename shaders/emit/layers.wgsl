@@ -143,7 +143,7 @@ fn lights_of(
         density_at(r.z, cosine.z, azimuth.z, later.z, matter),
         density_at(r.w, cosine.w, azimuth.w, later.w, matter),
     );
-    let sends = (even >= vec4<f32>(matter.light.w)) & (g > vec4<f32>(0.0));
+    let sends = (even >= vec4<f32>(matter.least_density)) & (g > vec4<f32>(0.0));
     if !any(sends) {
         return mat4x4<f32>();
     }

@@ -22,10 +22,10 @@ var<private> occluder_passed: bool;
 // Goes to the sample at `place` of the full frame.
 fn set_occluder(place: vec2<f32>) {
     let size = vec2<i32>(textureDimensions(occluder));
-    let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder.xy), vec2<i32>(0), size - 1);
-    occluder_farthest = textureLoad(occluder, texel, 0).x / frame.occluder.z;
+    let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder_origin), vec2<i32>(0), size - 1);
+    occluder_farthest = textureLoad(occluder, texel, 0).x / frame.hole_mass;
     let n = aberrate(look_direction(place.x, place.y)).n;
-    let closest = max(-n.x, 0.0) / frame.place.x;
-    occluder_ends = occluder_farthest < select(closest, NO_THING, frame.occluder.w > 0.0);
+    let closest = max(-n.x, 0.0) / frame.observer_u;
+    occluder_ends = occluder_farthest < select(closest, NO_THING, frame.occluder_lensed > 0.0);
     occluder_passed = false;
 }

@@ -45,8 +45,8 @@ fn halo_density(r: f32, cosine: f32, radius: f32, thickness: f32) -> f32 {
 }
 
 fn jet_density(r: f32, cosine: f32, matter: Matter) -> f32 {
-    return faded(r, matter.radii.x, matter.radii.y) * pow(r / matter.radii.z, -matter.form.z)
-        * gaussian((abs(cosine) - jet_wall(r, matter.form.y, matter.radii.z)) / matter.form.x);
+    return faded(r, matter.inner, matter.outer) * pow(r / matter.radius, -matter.slope)
+        * gaussian((abs(cosine) - jet_wall(r, matter.opening, matter.radius)) / matter.thickness);
 }
 
 fn jet_wall(r: f32, opening: f32, radius: f32) -> f32 {
@@ -55,29 +55,27 @@ fn jet_wall(r: f32, opening: f32, radius: f32) -> f32 {
 
 // `later`: the time at which the light left, less the frame's.
 fn spot_density(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> f32 {
-    let radius = matter.radii.x;
+    let radius = matter.radius;
     let axis = r * sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0));
-    let half_turn = sin(0.5 * (azimuth - matter.radii.z - matter.radii.w * later));
+    let half_turn = sin(0.5 * (azimuth - matter.azimuth - matter.angular_velocity * later));
     let across = axis - radius;
     let height = r * cosine;
-    let widths = sqrt(across * across + 4.0 * axis * radius * half_turn * half_turn + height * height) / matter.radii.y;
+    let widths = sqrt(across * across + 4.0 * axis * radius * half_turn * half_turn + height * height) / matter.size;
     return select(0.0, gaussian(widths), widths < SPOT_CUT);
 }
 
 // The density of matter at a place.
 fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> f32 {
-    let radii = matter.radii;
-    let form = matter.form;
-    let shape = matter.kind.x;
+    let shape = matter.shape;
     var density = 0.0;
     if has_shape(shape, SHAPE_DISK) {
-        density = disk_density(r, cosine, radii.x, radii.y, form.z, form.x);
+        density = disk_density(r, cosine, matter.inner, matter.outer, matter.slope, matter.thickness);
     }
     if has_shape(shape, SHAPE_TORUS) {
-        density = torus_density(r, cosine, radii.z, radii.w, form.x);
+        density = torus_density(r, cosine, matter.radius, matter.width, matter.thickness);
     }
     if has_shape(shape, SHAPE_HALO) {
-        density = halo_density(r, cosine, radii.z, form.x);
+        density = halo_density(r, cosine, matter.radius, matter.thickness);
     }
     if has_shape(shape, SHAPE_JET) {
         density = jet_density(r, cosine, matter);
@@ -85,37 +83,37 @@ fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> 
     if has_shape(shape, SHAPE_SPOT) {
         return spot_density(r, cosine, azimuth, later, matter);
     }
-    return select(density, 0.0, r > radii.y);
+    return select(density, 0.0, r > matter.outer);
 }
 
 // The number of cells that a stretch should be cut into: u and cos theta at its ends, and the angle that it sweeps.
 fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
     let near = 1.0 / u.x;
     let far = 1.0 / u.y;
-    if has_shape(matter.kind.x, SHAPE_SPOT) {
+    if has_shape(matter.shape, SHAPE_SPOT) {
         let run = near - far;
         let across = swept / max(min(u.x, u.y), 1e-30);
-        return sqrt(run * run + across * across) / matter.radii.y;
+        return sqrt(run * run + across * across) / matter.size;
     }
-    let thickness = matter.form.x;
+    let thickness = matter.thickness;
     let change = abs(cosines.y - cosines.x);
     var cells = abs(log(u.x / u.y)) / CELL_LN_R + swept / CELL_ANGLE;
-    if matter.kind.y == MOTION_ANGULAR_MOMENTUM {
+    if matter.motion == MOTION_ANGULAR_MOMENTUM {
         // Velocities by angular momentum bend without end towards the axis.
         let most = max(abs(cosines.x), abs(cosines.y));
         cells += 0.5 * swept / sqrt(max(1.0 - most * most, NEAR_AXIS * NEAR_AXIS));
     }
-    if has_shape(matter.kind.x, SHAPE_TORUS) {
+    if has_shape(matter.shape, SHAPE_TORUS) {
         let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
-        return cells + abs(sines.y * far - sines.x * near) / (1.5 * matter.radii.w)
-            + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radii.z);
+        return cells + abs(sines.y * far - sines.x * near) / (1.5 * matter.width)
+            + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radius);
     }
-    if has_shape(matter.kind.x, SHAPE_JET) {
-        let wall = jet_wall(far, matter.form.y, matter.radii.z) - jet_wall(near, matter.form.y, matter.radii.z);
+    if has_shape(matter.shape, SHAPE_JET) {
+        let wall = jet_wall(far, matter.opening, matter.radius) - jet_wall(near, matter.opening, matter.radius);
         return cells + (change + abs(wall)) / thickness;
     }
-    if has_shape(matter.kind.x, SHAPE_HALO) {
-        cells += abs(near - far) / (1.5 * matter.radii.z);
+    if has_shape(matter.shape, SHAPE_HALO) {
+        cells += abs(near - far) / (1.5 * matter.radius);
     }
     return cells + change / (1.5 * thickness);
 }

@@ -30,19 +30,19 @@ fn visible_shift(g: f32, gravity: f32) -> Shift {
 // nu(static observer or ZAMO where the camera is), for E and L scaled to nu_local = 1; in the rain frame inside the
 // horizon, its own.
 fn nu_static_observer(energy: f32) -> f32 {
-    let static_lapse = 1.0 - 2.0 * frame.place.x;
+    let static_lapse = 1.0 - 2.0 * frame.observer_u;
     if frame.rain == 0u || static_lapse <= 0.0 {
         return 1.0;
     }
     return energy / sqrt(static_lapse);
 }
 
-// The frequency that the ZAMO at 1/r = u and cos theta = `cosine` measures (src/physics/orbit.rs). frame.hole is a, r+,
-// r-; d = Delta / r^2; big_a = A / r^4; omega is the ZAMO's angular velocity.
+// The frequency that the ZAMO at 1/r = u and cos theta = `cosine` measures (src/physics/orbit.rs). d = Delta / r^2;
+// big_a = A / r^4; omega is the ZAMO's angular velocity.
 fn zamo_frequency(u: f32, cosine: f32, energy: f32, angular_momentum: f32) -> f32 {
-    let a2u2 = frame.hole.x * frame.hole.x * u * u;
-    let d = (1.0 - frame.hole.y * u) * (1.0 - frame.hole.z * u);
+    let a2u2 = frame.spin * frame.spin * u * u;
+    let d = (1.0 - frame.r_plus * u) * (1.0 - frame.r_minus * u);
     let big_a = (1.0 + a2u2) * (1.0 + a2u2) - d * a2u2 * (1.0 - cosine * cosine);
-    let omega = 2.0 * frame.hole.x * u * u * u / big_a;
+    let omega = 2.0 * frame.spin * u * u * u / big_a;
     return (energy - omega * angular_momentum) * sqrt(big_a / (d * (1.0 + a2u2 * cosine * cosine)));
 }

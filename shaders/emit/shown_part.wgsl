@@ -16,9 +16,9 @@ fn beyond_occluder(c: Constants, from_state: State, tau: f32) -> f32 {
     // Near infinity, and past it, where u < 0, everything is; squares of such distances are beyond single precision.
     var distance = 1e30;
     if there.u > 1e-16 {
-        distance = length(chart_direction(there.n, there.drag) / there.u - frame.e_r.xyz / frame.place.x);
+        distance = length(chart_direction(there.n, there.drag) / there.u - frame.e_r.xyz / frame.observer_u);
     }
-    let eye = 1.0 / frame.place.x;
+    let eye = 1.0 / frame.observer_u;
     // Beyond infinite distances nothing is, nor beyond NaN; all is beyond those below 0.
     let farthest = select(1e30, clamp(occluder_farthest, 0.0, 1e30), occluder_farthest < 1e30);
     return distance / (distance + eye) - farthest / (farthest + eye);

@@ -70,7 +70,7 @@ fn add_part(
     // cos th goes as a sine along a ray: between crossings of the plane it is nowhere less than at the nearer end.
     let heights = vec2<f32>(from_state.n.z, to_state.n.z);
     let least = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
-    if ALONE && least > frame.matter[0].reach.z * (1.0 + MARGIN_U) + MARGIN_COS {
+    if ALONE && least > frame.matter[0].most_cosine * (1.0 + MARGIN_U) + MARGIN_COS {
         return;
     }
     let course = step_course(c, from_state, to_state, h);
@@ -133,7 +133,7 @@ fn width_at(
     let n = vec3<f32>(quintic_at(course.n_x, x), quintic_at(course.n_y, x), quintic_at(course.n_z, x));
     let u = max(quintic_at(course.u, x), 1e-9);
     // Aberration makes angles as much smaller as frequencies larger.
-    let pixel_angle = frame.right.w * ratio;
+    let pixel_angle = frame.pixel_angle * ratio;
     return pixel_width(c, observer, u, quintic_slope(course.u, x) * h, n, swept, pixel_angle);
 }
 
@@ -200,18 +200,18 @@ fn weight_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f3
     let near = density_at(1.0 / u.x, cosines.x, 0.0, 0.0, matter);
     let far = density_at(1.0 / u.y, cosines.y, 0.0, 0.0, matter);
     let most = max(max(near, far), density_at(r, 0.5 * (cosines.x + cosines.y), 0.0, 0.0, matter));
-    if matter.kind.z != 0u {
+    if matter.power_law != 0u {
         return min(most, 1.0);
     }
     let run = 1.0 / u.x - 1.0 / u.y;
     let across = swept * r;
-    return 1.0 - exp(-CLUMPED * matter.glow.x * most * sqrt(run * run + across * across));
+    return 1.0 - exp(-CLUMPED * matter.absorption * most * sqrt(run * run + across * across));
 }
 
 // The share of a stretch, of which the straight lines between its ends lie within a matter's reach; (1, 0) for none.
 fn clip(matter: Matter, u: vec2<f32>, cosines: vec2<f32>) -> vec2<f32> {
-    let most = matter.reach.z * (1.0 + MARGIN_U) + MARGIN_COS;
-    let radial = clip_between(u, matter.reach.x * (1.0 - MARGIN_U), matter.reach.y * (1.0 + MARGIN_U));
+    let most = matter.most_cosine * (1.0 + MARGIN_U) + MARGIN_COS;
+    let radial = clip_between(u, matter.u_outer * (1.0 - MARGIN_U), matter.u_inner * (1.0 + MARGIN_U));
     let polar = clip_between(cosines, -most, most);
     return vec2<f32>(max(radial.x, polar.x), min(radial.y, polar.y));
 }
@@ -313,7 +313,7 @@ fn coefficients_at(
         for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
             let matter = frame.matter[k];
             let even = density_at(r, cosine, azimuth, later, matter);
-            if !(even >= matter.light.w) {
+            if !(even >= matter.least_density) {
                 continue;
             }
             let at = place_at(c, u, cosine);

@@ -47,7 +47,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     if lookup.cell.y < lens.outer_rows {
         record = with_looked_up_sky(record);
     }
-    let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u,
+    let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings, frame.capture_u,
         frame.opaque_u);
     for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
         deferred_crossings[i] = vec3<f32>(0.0);

@@ -57,14 +57,14 @@ fn curve_of(t: f32, t_hat: f32) -> Curve {
     curve.deviates = t_hat < NEARLY_CRITICAL;
     if curve.deviates {
         curve.e0 = lens.separatrix;
-        let beta = select(0.0, frame.place.w, frame.rain != 0u);
+        let beta = select(0.0, frame.lapse, frame.rain != 0u);
         // sin(d / 2) and cos(d / 2) of d = psi - psi_c; cos((psi + psi_c) / 2) = cos(psi_c + d / 2).
         let cos_half = inverseSqrt(1.0 + t * t);
         let sin_half = t * cos_half;
         let middle = lens.critical.z * cos_half - lens.critical.y * sin_half;
         curve.v = 0.0;
-        // v'(0) of src/physics/lens/schwarzschild.rs, by sigma; its f is lens.slope, its u_e frame.place.x.
-        curve.dv = curve.kappa * -2.0 * lens.slope * frame.place.x * sin_half
+        // v'(0) of src/physics/lens/schwarzschild.rs, by sigma; its f is lens.slope, its u_e frame.observer_u.
+        curve.dv = curve.kappa * -2.0 * lens.slope * frame.observer_u * sin_half
             * (cos_half - beta * middle) / (sine * lens.critical.y);
     } else {
         curve.v = begin.state.u;

@@ -24,7 +24,7 @@ fn find_ends(@builtin(global_invocation_id) id: vec3<u32>) {
     let curve = curve_of(t.x, t.y);
     let target_u = select(0.0, LENS_INNER_END, id.y == 1u);
     let sense = select(-1.0, 1.0, id.y == 1u);
-    let step = END_STEP * min(1.0, 0.5 / frame.place.x);
+    let step = END_STEP * min(1.0, 0.5 / frame.observer_u);
     let decay = step_decay(curve, step);
     var unused: vec3<f32>;
     var at = CurvePoint(0.0, curve.v, curve.dv);

@@ -109,7 +109,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     }
 
     // L = r sin(theta) p_phi, p = -n.
-    let momentum = -frame.place.y * n.z / frame.place.x;
+    let momentum = -frame.observer_sine * n.z / frame.observer_u;
     let polar = polar_momentum(begin_local(n), seen.frequency_ratio);
     var record = Record(FATE_CAPTURED, 0u, energy, momentum, polar, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if escaped {
@@ -138,14 +138,14 @@ fn with_sky(record: Record) -> Record {
 // E of light along the look direction n that the local frame's observer measures at frequency 1: the lapse; in the
 // rain frame 1 - sqrt(2 u) cos psi. If it is not above 0, no light comes from there.
 fn local_energy(n: vec3<f32>) -> f32 {
-    return select(frame.place.w, 1.0 + frame.place.w * n.x, frame.rain != 0u);
+    return select(frame.lapse, 1.0 + frame.lapse * n.x, frame.rain != 0u);
 }
 
 // The angle phi in (0, pi] at which the ray first crosses the plane: the first zero of N_z = cos(theta) cos(phi) -
 // sin(theta) n_theta sin(phi), n_theta being of the unit tangent. 1e30 for a ray that lies in the plane.
 fn first_crossing_angle(n_theta: f32) -> f32 {
-    let sine = frame.place.y;
-    let cosine = frame.place.z;
+    let sine = frame.observer_sine;
+    let cosine = frame.observer_cosine;
     let angle = arctan2(abs(cosine), sine * n_theta * sign(cosine));
     let in_plane = select(PI, 1e30, n_theta == 0.0);
     return select(angle, in_plane, cosine == 0.0);
@@ -248,7 +248,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     (*crossing).place = EmissionPoint(-log(u), arctan2(n.y, n.x), 0.0);
     if DELAY {
         let integral = column_at(lens_delay, phi / lookup.swept).x;
-        (*crossing).place.delay = retardation(c, frame.place.x, begin.state.du, u, du, integral);
+        (*crossing).place.delay = retardation(c, frame.observer_u, begin.state.du, u, du, integral);
     }
     if !FOOTPRINTS {
         return;

@@ -99,7 +99,7 @@ fn crossing_place(crossing: Crossing) -> vec3<f32> {
 
 // Its straight distance from the camera, M.
 fn crossing_distance(crossing: Crossing) -> f32 {
-    return length(crossing_place(crossing) - frame.e_r.xyz / frame.place.x);
+    return length(crossing_place(crossing) - frame.e_r.xyz / frame.observer_u);
 }
 
 // Whether an edge of the disk that shows runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so
@@ -111,7 +111,7 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let sum = select(0.0, abs(change.x) + abs(change.y), far <= near);
     let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
     let through = abs(vec2<f32>(u) - frame.disk_u) < vec2<f32>(EDGE_REACH * sum);
-    return steep || any(through & (vec2<f32>(sum) >= frame.shown_edges.xy));
+    return steep || any(through & (vec2<f32>(sum) >= frame.shown_edges));
 }
 
 // Lookups take sin d / (change of d per pixel) for the distance from the critical curve in pixels, d being the angle

@@ -83,7 +83,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
     if begin.has_light {
         // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
         let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
-        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
+        let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
             frame.capture_u, opaque_u);
         let traced = trace(begin.c, begin.state, settings);
         record.fate = traced.fate;

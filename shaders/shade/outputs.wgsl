@@ -52,7 +52,7 @@ fn without_crossing(fate: u32) -> u32 {
 // The bits of the distance to what the ray meets first.
 fn depth_of(fate: u32, first: Crossing, n: vec3<f32>) -> u32 {
     let mass = outputs.scene_x.w;
-    let r = 1.0 / frame.place.x;
+    let r = 1.0 / frame.observer_u;
     if first.u > 0.0 && first.order == 0u {
         return bitcast<u32>(mass * crossing_distance(first));
     }

@@ -74,12 +74,12 @@ fn no_value() -> f32 {
 }
 
 fn to_sky(d: vec3<f32>) -> vec3<f32> {
-    return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
+    return frame.sky_x * d.x + frame.sky_y * d.y + frame.sky_z * d.z;
 }
 
 // The least patch of src/sky/stars.rs.
 fn least_patch() -> f32 {
-    return frame.sky_z.w;
+    return frame.least_patch;
 }
 
 // Whether the host's things hide a crossing.
@@ -158,10 +158,10 @@ fn sky_light(here: Record) -> vec3<f32> {
     }
     var light = vec3<f32>(0.0);
     if SHOWS_STARS {
-        light = star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.sky_x.w;
+        light = star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.stars_brightness;
     }
     if SHOWS_MILKY_WAY || SHOWS_MAP {
-        light += extended_light(here, shift) * frame.sky_y.w;
+        light += extended_light(here, shift) * frame.map_brightness;
     }
     if SHOWS_GRID {
         light = under_grid(light, to_sky(here.sky), here.footprint);
@@ -175,10 +175,10 @@ fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     let seen = map_patch(here.footprint);
     var light = vec3<f32>(0.0);
     if SHOWS_MILKY_WAY {
-        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, seen), shift.colour, shift.beaming);
+        light = shifted_map_light(map_light(milky_way, frame.milky_way_size, d, seen), shift.colour, shift.beaming);
     }
     if SHOWS_MAP {
-        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, seen), shift.colour, shift.beaming);
+        light += shifted_map_light(map_light(sky_map, frame.map_size, d, seen), shift.colour, shift.beaming);
     }
     return light;
 }

@@ -9,39 +9,64 @@
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
     // Units of a FramePoint (camera/projection.wgsl), to the right, up, forward, as components in the observer's frame.
-    // w of the first: the angle of a fisheye's pixel.
-    right: vec4<f32>,
+    right: vec3<f32>,
+    // The angle of a fisheye's pixel, radians.
+    pixel_angle: f32,
     up: vec4<f32>,
     forward: vec4<f32>,
-    // Velocity against the local frame, and gamma.
-    beta: vec4<f32>,
+    // Velocity against the local frame, and its Lorentz factor.
+    beta: vec3<f32>,
+    gamma: f32,
     // Unit vectors of the local frame, chart.
     e_r: vec4<f32>,
     e_theta: vec4<f32>,
     e_phi: vec4<f32>,
-    // u, sin theta, cos theta of the observer, and the lapse (rain: sqrt(2 u)).
-    place: vec4<f32>,
+    // 1/r, sin theta and cos theta of the observer, and the lapse there (rain: sqrt(2 u)).
+    observer_u: f32,
+    observer_sine: f32,
+    observer_cosine: f32,
+    lapse: f32,
     // omega, q, sqrt(Sg), sqrt(Sg D) of docs/numerics.md's start values.
-    zamo: vec4<f32>,
-    // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
-    hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the
-    // maps, of the third: least_patch of stars.rs.
-    sky_x: vec4<f32>,
-    sky_y: vec4<f32>,
-    sky_z: vec4<f32>,
-    // Temperature of the hottest ring, ln Y of the stated temperature, opacity, brightness.
-    disk: vec4<f32>,
-    // The size of the full frame, pixels; then the step in sigma and the tolerance.
-    size: vec4<f32>,
-    // Strength, delay of light of the reference time (M), then ln r inside which it fades out (-1e30:
-    // nowhere), of Turbulence in src/emit/turbulence.rs; 0.
-    turbulence: vec4<f32>,
-    // Sine and cosine of the critical angle, whether the capture margin tells the level, of CurveLevel in
-    // src/physics/lens/critical.rs; 0.
-    critical: vec4<f32>,
-    // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
+    omega: f32,
+    q: f32,
+    root_sigma: f32,
+    root_sigma_d: f32,
+    // The hole's spin a, and its outer and inner horizon.
+    spin: f32,
+    r_plus: f32,
+    r_minus: f32,
+    // The ISCO of the disk's matter: negative for matter towards -ph.
+    signed_isco: f32,
+    // Columns that take chart directions to sky axes, each with a number beside it: brightness of the stars, brightness
+    // of the maps, and least_patch of stars.rs.
+    sky_x: vec3<f32>,
+    stars_brightness: f32,
+    sky_y: vec3<f32>,
+    map_brightness: f32,
+    sky_z: vec3<f32>,
+    least_patch: f32,
+    // Temperature of the disk's hottest ring, K; ln Y of the stated temperature; opacity; brightness.
+    disk_hottest: f32,
+    disk_log_reference: f32,
+    disk_opacity: f32,
+    disk_brightness: f32,
+    // The size of the full frame, pixels.
+    size: vec2<f32>,
+    // Of integration: the step in sigma, and the tolerance.
+    step: f32,
+    tolerance: f32,
+    // Strength, delay of light of the reference time (M), and ln r inside which it fades out (-1e30: nowhere), of
+    // Turbulence in src/emit/turbulence.rs.
+    turbulence_strength: f32,
+    turbulence_delay: f32,
+    turbulence_fades_inside: f32,
+    // Sine and cosine of the critical angle, and 1 if the capture margin tells the level, else 0, of CurveLevel in
+    // src/physics/lens/critical.rs.
+    critical: vec2<f32>,
+    critical_by_margin: u32,
+    // 1/r of the disk's outer and inner edge, (1, 0) without one.
     disk_u: vec2<f32>,
+    // 1/r between which crossings hide all that is behind them, (1, 0) without such.
     opaque_u: vec2<f32>,
     capture_u: f32,
     max_steps: u32,
@@ -51,34 +76,49 @@ struct Frame {
     // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
     view: u32,
-    // Seed of the turbulence, and the number of its first band (i32).
-    pattern: vec2<u32>,
+    // Seed of the turbulence, and the number of its first band.
+    pattern_seed: u32,
+    first_band: i32,
     // Columns and rows of the finest levels of the Milky Way and of the host's map.
-    map_sizes: vec4<u32>,
+    milky_way_size: vec2<u32>,
+    map_size: vec2<u32>,
     // BHR_PROJECTION_*, for kernels that serve all.
     projection: u32,
     // The layer of traced records that holds the medium before the first crossing (traced/layout.wgsl).
     medium_layer: u32,
     // 1/r between which crossings of the plane are kept: all emitters of the plane lie there. (1, 0) without any.
     plane_u: vec2<f32>,
-    // SoftEdges of src/emit/thin_disk.rs: outer, inner.
-    soft_edges: vec4<f32>,
-    // 1 if the disk's light is limb-darkened, 0 if it is isotropic; then ThinDisk::least_profile of
-    // src/emit/thin_disk.rs, (0, 0) without; 0.
-    surface: vec4<f32>,
-    // `least` of DiskEdges in src/scene/refine.rs: outer, inner; light that need not be told exactly at half
-    // resolution, and the tolerance there (`Evenness` of src/emit/half.rs).
-    shown_edges: vec4<f32>,
+    // `outer` and `inner` of SoftEdges in src/emit/thin_disk.rs.
+    soft_outer: vec2<f32>,
+    soft_inner: vec2<f32>,
+    // 1 if the disk's light is limb-darkened, 0 if it is isotropic.
+    limb_darkened: u32,
+    // ThinDisk::least_profile of src/emit/thin_disk.rs: 1/r beyond which it counts, and the profile; 0 without.
+    least_profile_u: f32,
+    least_profile: f32,
+    // `least` of DiskEdges in src/scene/refine.rs: outer, inner.
+    shown_edges: vec2<f32>,
+    // Light that need not be told exactly at half resolution, and the tolerance there (`Evenness` of src/emit/half.rs).
+    least_light: f32,
+    half_tolerance: f32,
     // Plunge of src/physics/plunge.rs: ISCO, E, a x, x; 0 where no matter plunges.
-    plunge: vec4<f32>,
-    // The first pixel of the occluder in the full frame, M in scene lengths; 1 where its things are lensed, else 0.
-    occluder: vec4<f32>,
+    plunge_isco: f32,
+    plunge_energy: f32,
+    plunge_spin_term: f32,
+    plunge_x: f32,
+    // The first pixel of the occluder in the full frame.
+    occluder_origin: vec2<f32>,
+    // M in scene lengths, which distances of the occluder are in.
+    hole_mass: f32,
+    // 1 where the occluder's things are lensed, else 0.
+    occluder_lensed: f32,
     // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
     bands: array<vec4<u32>, MOST_BANDS>,
-    // 1/r, outer end first, outside which no matter with depth is; how many volumes and spots there are; delay of light
-    // of the reference time (M), of When in src/emit/turbulence.rs.
+    // 1/r, outer end first, outside which no matter with depth is.
     depth_u: vec2<f32>,
+    // The number of volumes and spots.
     matter_count: u32,
+    // Delay of light of the reference time (M), of When in src/emit/turbulence.rs.
     matter_delay: f32,
     matter: array<Matter, MOST_MATTER>,
 }

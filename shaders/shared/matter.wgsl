@@ -3,20 +3,48 @@
 // src/gpu/frame/uniforms/matter.rs; what its numbers mean stands in src/emit/volume.rs and src/emit/hot_spot.rs.
 
 struct Matter {
-    // SHAPE_*, MOTION_*, 1 for a power law and 0 for a blackbody's light; 0.
-    kind: vec4<u32>,
-    // 1/r between which it is, outer end first, and the greatest |cos theta|; +1 or -1: its sense of motion.
-    reach: vec4<f32>,
-    // Inner, outer, radius, width. A spot: radius, size, azimuth at the frame's time, angular velocity towards +phi.
-    radii: vec4<f32>,
-    // Thickness, opening, slope, ISCO.
-    form: vec4<f32>,
-    // KEPLERIAN: sub_keplerian, infall; ANGULAR_MOMENTUM: l0; RIGID: angular velocity; OUTFLOW: speed, base. 0, 0.
-    motion: vec4<f32>,
-    // Absorption, temperature, reference radius, temperature slope.
-    glow: vec4<f32>,
-    // ln of the reference luminance, spectral index, brightness, the least density that is not left out.
-    light: vec4<f32>,
-    // Linear Rec. 709; 0.
-    tint: vec4<f32>,
+    // SHAPE_* and MOTION_*.
+    shape: u32,
+    motion: u32,
+    // 1 for a power law's light, 0 for a blackbody's.
+    power_law: u32,
+    // The standard deviation of a spot's density, M.
+    size: f32,
+    // 1/r between which the matter is, outer end first, and the greatest |cos theta|.
+    u_outer: f32,
+    u_inner: f32,
+    most_cosine: f32,
+    // The sense of motion: +1 or -1.
+    sense: f32,
+    // Radii between which a volume is, M; the radius that its shape is about, or that of a spot's orbit; the width of a
+    // torus.
+    inner: f32,
+    outer: f32,
+    radius: f32,
+    width: f32,
+    // Thickness, opening angle of a jet, slope of the density: as in BhrVolume.
+    thickness: f32,
+    opening: f32,
+    slope: f32,
+    // The ISCO of the matter's sense of motion.
+    isco: f32,
+    // Numbers of the law of motion. KEPLERIAN: sub_keplerian, infall; ANGULAR_MOMENTUM: l0, 0; RIGID: angular velocity,
+    // 0; OUTFLOW: speed, base.
+    law: vec2<f32>,
+    // Of a spot: azimuth at the frame's time, and angular velocity towards +phi, rad/M.
+    azimuth: f32,
+    angular_velocity: f32,
+    // Absorption per M at density 1; temperature, K, at the reference radius, and the power of r that it falls by.
+    absorption: f32,
+    temperature: f32,
+    reference_radius: f32,
+    temperature_slope: f32,
+    // ln of the reference luminance, spectral index, brightness.
+    log_reference: f32,
+    spectral_index: f32,
+    brightness: f32,
+    // The least density that is not left out.
+    least_density: f32,
+    // Linear Rec. 709.
+    tint: vec3<f32>,
 }

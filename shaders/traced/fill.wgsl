@@ -135,7 +135,7 @@ fn interpolate(layer: u32) -> bool {
         found[i].w = min(found[i].w, 1.0);
     }
     if SHOWS_DEPTH {
-        return depth_is_even(bends.xy, least, frame.shown_edges.w);
+        return depth_is_even(bends.xy, least, frame.half_tolerance);
     }
-    return light_is_even(bends, darkest, frame.shown_edges.z, frame.shown_edges.w);
+    return light_is_even(bends, darkest, frame.least_light, frame.half_tolerance);
 }

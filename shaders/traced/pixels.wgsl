@@ -117,9 +117,9 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     }
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local,
-        polar_momentum(begin, frequency_ratio) * frame.place.x);
+        polar_momentum(begin, frequency_ratio) * frame.observer_u);
     if begin.has_light {
-        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
+        let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
             frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);
         m.fate = traced.fate;

@@ -188,7 +188,7 @@ impl GpuTracer {
         let steps = self.steps(scene, request, &setup, (bytes, ray_steps), most_rows);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
-        setup.uniform.map_sizes = tables.map_sizes();
+        [setup.uniform.milky_way_size, setup.uniform.map_size] = tables.map_sizes();
         // Rows for the host go where it maps them.
         let staged = kind == PixelTarget::Rows && matches!(delivery, Delivery::Host);
         let packed = if staged { 0 } else { pixel_bytes };

@@ -23,7 +23,7 @@ fn enter_lens() {
     lens = SchwarzschildLens(in4(1u), in1(5u), in1(6u), word(7u), word(8u));
 }
 fn followed(curve: Curve, steps: u32) -> CurvePoint {
-    let h = 0.2 * min(1.0, 0.5 / frame.place.x);
+    let h = 0.2 * min(1.0, 0.5 / frame.observer_u);
     let decay = step_decay(curve, h);
     var inner: vec3<f32>;
     var at = CurvePoint(0.0, curve.v, curve.dv);

@@ -96,7 +96,11 @@ macro_rules! at_place {
 }
 macro_rules! with_shape {
     ($call:literal) => {
-        concat!("var m: Matter; m.radii = in4(0u); m.form = vec4<f32>(in3(4u), 6.0); ", $call)
+        concat!(
+            "var m: Matter; m.inner = in1(0u); m.outer = in1(1u); m.radius = in1(2u); m.width = in1(3u);
+             m.thickness = in1(4u); m.opening = in1(5u); m.slope = in1(6u); m.isco = 6.0; ",
+            $call
+        )
     };
 }
 
@@ -236,8 +240,8 @@ fn flows() -> Vec<super::Twin> {
             flow,
             "flow_velocity",
             at_place!(
-                "var m: Matter; m.kind.y = word(25u); m.reach.w = in1(26u); m.form.w = in1(27u);
-                  m.motion = vec4<f32>(in2(28u), 0.0, 0.0); out2(flow_velocity(c, p, m));"
+                "var m: Matter; m.motion = word(25u); m.sense = in1(26u); m.isco = in1(27u);
+                  m.law = in2(28u); out2(flow_velocity(c, p, m));"
             ),
             |i| {
                 place(i);
@@ -318,7 +322,7 @@ fn shapes() -> Vec<super::Twin> {
         twin(
             shape,
             "density_at",
-            with_shape!("m.kind.x = word(9u); out1(density_at(in1(7u), in1(8u), 0.0, 0.0, m));"),
+            with_shape!("m.shape = word(9u); out1(density_at(in1(7u), in1(8u), 0.0, 0.0, m));"),
             |i| {
                 shape_and_place(i);
                 i.pick(4);
@@ -335,7 +339,8 @@ fn shapes() -> Vec<super::Twin> {
         twin(
             shape,
             "spot_density",
-            "var m: Matter; m.radii = in4(0u); out1(spot_density(in1(4u), in1(5u), in1(6u), in1(7u), m));",
+            "var m: Matter; m.radius = in1(0u); m.size = in1(1u); m.azimuth = in1(2u); m.angular_velocity = in1(3u);
+             out1(spot_density(in1(4u), in1(5u), in1(6u), in1(7u), m));",
             |i| {
                 let radius = i.log(5.0, 30.0);
                 i.log(0.1, radius / 4.0);
@@ -361,7 +366,7 @@ fn shapes() -> Vec<super::Twin> {
             shape,
             "cells_of",
             with_shape!(
-                "m.kind = vec4<u32>(word(12u), word(13u), 0u, 0u); out1(cells_of(in2(7u), in2(9u), in1(11u), m));"
+                "m.shape = word(12u); m.motion = word(13u); m.size = in1(1u); out1(cells_of(in2(7u), in2(9u), in1(11u), m));"
             ),
             |i| {
                 push_shape(i);
@@ -403,8 +408,9 @@ pub fn group() -> Group {
         twin(
             "emit/glow",
             "glow_coefficients",
-            "var m: Matter; m.kind.z = word(0u); m.glow = in4(1u); m.light = vec4<f32>(in3(5u), 0.0);
-             m.tint = vec4<f32>(in3(8u), 0.0);
+            "var m: Matter; m.power_law = word(0u); m.absorption = in1(1u); m.temperature = in1(2u);
+             m.reference_radius = in1(3u); m.temperature_slope = in1(4u); m.log_reference = in1(5u);
+             m.spectral_index = in1(6u); m.brightness = in1(7u); m.tint = in3(8u);
              let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), in1(15u), Shift(in1(16u), in1(17u)));
              out3(s.light); out2(vec2<f32>(s.intensity, s.absorption));",
             |i| {
@@ -497,7 +503,7 @@ pub fn group() -> Group {
         twin(
             "emit/volumes",
             "clip clip_between",
-            "var m: Matter; m.reach = vec4<f32>(in3(0u), 1.0); let s = clip(m, in2(3u), in2(5u));
+            "var m: Matter; m.u_outer = in1(0u); m.u_inner = in1(1u); m.most_cosine = in1(2u); let s = clip(m, in2(3u), in2(5u));
              out2(select(vec2<f32>(0.0), s, s.x < s.y));",
             |i| {
                 let outer = i.log(0.01, 0.1);

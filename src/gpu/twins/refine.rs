@@ -26,7 +26,7 @@ fn enter_samples() {
     enter_scene();
     frame.max_crossings = 1u;
     frame.disk_u = in2(1u);
-    frame.disk.z = 0.5;
+    frame.disk_opacity = 0.5;
     for (var k = 0u; k < 4u; k += 1u) {
         lane_u[k * LANE_ORDERS] = in1(3u + k);
         lane_sky[k].w = f32(FATE_ESCAPED);

@@ -137,7 +137,7 @@ fn made(kind: Kind, number: u32) -> View {
     let mut uniform =
         FrameUniform::new(&scene, &scene.emitters(), &lens, &for_f32(scene.pixel_settings()), 4).expect("a uniform");
     let size = sky::map().levels()[0].size;
-    uniform.map_sizes = [size[0], size[1], size[0], size[1]];
+    (uniform.milky_way_size, uniform.map_size) = (size, size);
     View { scene, lens, uniform }
 }
 

@@ -68,9 +68,8 @@ impl SkyMaps {
     }
 
     /// Columns and rows of their finest levels.
-    pub fn sizes(&self) -> [u32; 4] {
-        let [milky_way, map] = self.bound().map(|map| map.finest);
-        [milky_way[0], milky_way[1], map[0], map[1]]
+    pub fn sizes(&self) -> [[u32; 2]; 2] {
+        self.bound().map(|map| map.finest)
     }
 
     /// Brings them up to the scene: a map that is not shown keeps its texture as long as the scene has it.

@@ -146,8 +146,8 @@ impl Tables {
         [light, cells, milky_way, map, wgpu::BindingResource::Sampler(self.sky_maps.sampler())]
     }
 
-    /// `Frame::map_sizes` of shared/frame.wgsl.
-    pub fn map_sizes(&self) -> [u32; 4] {
+    /// `milky_way_size` and `map_size` of shared/frame.wgsl.
+    pub fn map_sizes(&self) -> [[u32; 2]; 2] {
         self.sky_maps.sizes()
     }
 

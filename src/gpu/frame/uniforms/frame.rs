@@ -22,28 +22,52 @@ use crate::scene::{EmissionLaw, Projection, Scene};
 use crate::sky::least_patch;
 use crate::tracer::{FrameRequest, Tile};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct FrameUniform {
-    right: Vec4,
+    right: Vec3,
+    pixel_angle: f32,
     up: Vec4,
     forward: Vec4,
-    beta: Vec4,
+    beta: Vec3,
+    gamma: f32,
     e_r: Vec4,
     e_theta: Vec4,
     e_phi: Vec4,
-    place: Vec4,
-    zamo: Vec4,
-    hole: Vec4,
-    sky_x: Vec4,
-    sky_y: Vec4,
-    sky_z: Vec4,
-    disk: Vec4,
-    size: Vec4,
-    turbulence: Vec4,
-    critical: Vec4,
+    observer_u: f32,
+    observer_sine: f32,
+    observer_cosine: f32,
+    lapse: f32,
+    omega: f32,
+    q: f32,
+    root_sigma: f32,
+    root_sigma_d: f32,
+    spin: f32,
+    r_plus: f32,
+    r_minus: f32,
+    signed_isco: f32,
+    sky_x: Vec3,
+    stars_brightness: f32,
+    sky_y: Vec3,
+    map_brightness: f32,
+    sky_z: Vec3,
+    least_patch: f32,
+    disk_hottest: f32,
+    disk_log_reference: f32,
+    disk_opacity: f32,
+    disk_brightness: f32,
+    size: [f32; 2],
+    step: f32,
+    tolerance: f32,
+    turbulence_strength: f32,
+    turbulence_delay: f32,
+    turbulence_fades_inside: f32,
+    unused_after_turbulence: u32,
+    critical: [f32; 2],
+    critical_by_margin: u32,
+    unused_after_critical: u32,
     disk_u: [f32; 2],
     opaque_u: [f32; 2],
     capture_u: f32,
@@ -52,17 +76,30 @@ pub struct FrameUniform {
     rain: u32,
     effects: u32,
     view: u32,
-    pattern: [u32; 2],
-    /// Known once the textures are there (`Tables::map_sizes`).
-    pub map_sizes: [u32; 4],
+    pattern_seed: u32,
+    first_band: i32,
+    /// Known once the textures are there, as is `map_size` (`Tables::map_sizes`).
+    pub milky_way_size: [u32; 2],
+    pub map_size: [u32; 2],
     projection: u32,
     medium_layer: u32,
     plane_u: [f32; 2],
-    soft_edges: Vec4,
-    surface: Vec4,
-    shown_edges: Vec4,
-    plunge: Vec4,
-    occluder: Vec4,
+    soft_outer: [f32; 2],
+    soft_inner: [f32; 2],
+    limb_darkened: u32,
+    least_profile_u: f32,
+    least_profile: f32,
+    unused_after_profile: u32,
+    shown_edges: [f32; 2],
+    least_light: f32,
+    half_tolerance: f32,
+    plunge_isco: f32,
+    plunge_energy: f32,
+    plunge_spin_term: f32,
+    plunge_x: f32,
+    occluder_origin: [f32; 2],
+    hole_mass: f32,
+    occluder_lensed: f32,
     bands: [[u32; 4]; MOST_BANDS],
     depth_u: [f32; 2],
     matter_count: u32,
@@ -90,35 +127,40 @@ pub struct PassUniform {
 #[cfg(test)]
 pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
-    let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
-        sky_x, sky_y, sky_z, disk, size, turbulence, critical, disk_u, opaque_u, capture_u, max_steps,
-        max_crossings, rain, effects, view, pattern, map_sizes, projection,
-        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, occluder, bands, depth_u, matter_count,
-        matter_delay, matter);
+    let frame = layout!(FrameUniform as "Frame": right, pixel_angle, up, forward, beta, gamma, e_r, e_theta, e_phi,
+        observer_u, observer_sine, observer_cosine, lapse, omega, q, root_sigma, root_sigma_d, spin, r_plus, r_minus,
+        signed_isco, sky_x, stars_brightness, sky_y, map_brightness, sky_z, least_patch, disk_hottest,
+        disk_log_reference, disk_opacity, disk_brightness, size, step, tolerance, turbulence_strength,
+        turbulence_delay, turbulence_fades_inside, critical, critical_by_margin, disk_u, opaque_u, capture_u,
+        max_steps, max_crossings, rain, effects, view, pattern_seed, first_band, milky_way_size, map_size, projection,
+        medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, shown_edges,
+        least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x, occluder_origin,
+        hole_mass, occluder_lensed, bands, depth_u, matter_count, matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin,
         image_origin, pixels_first, pixels_row);
     [frame, pass]
 }
 
-fn with(v: DVec3, w: f64) -> Vec4 {
-    v.as_vec3().extend(w as f32)
-}
-
-fn four(x: f64, y: f64, z: f64, w: f64) -> Vec4 {
-    with(DVec3::new(x, y, z), w)
-}
-
 /// omega, q, sqrt(Sg), sqrt(Sg D) of the start values (docs/numerics.md); 0 in the rain frame, which has its own.
-fn zamo(frame: &LocalFrame) -> Vec4 {
+fn zamo(frame: &LocalFrame) -> [f64; 4] {
     if frame.rain {
-        return Vec4::ZERO;
+        return [0.0; 4];
     }
     let (a, u) = (frame.a, 1.0 / frame.r);
     let au2 = (a * u).powi(2);
     let sigma = 1.0 + au2 * frame.cos * frame.cos;
     let d = (1.0 - horizon_outer(a) * u) * (1.0 - horizon_inner(a) * u);
     let big_a = (1.0 + au2).powi(2) - d * au2 * frame.sin * frame.sin;
-    four(zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt())
+    [zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt()]
+}
+
+fn f32s<const N: usize>(numbers: [f64; N]) -> [f32; N] {
+    numbers.map(|v| v as f32)
+}
+
+/// A vector in 16 bytes, of which the last 4 are not used.
+fn padded(v: DVec3) -> Vec4 {
+    v.as_vec3().extend(0.0)
 }
 
 /// An interval of 1/r; (1, 0), which nothing lies in, for none.
@@ -146,7 +188,8 @@ fn evenness(scene: &Scene) -> [f64; 2] {
 impl FrameUniform {
     /// Whether rays are the same with both.
     pub fn is_same(&self, other: &Self) -> bool {
-        bytemuck::bytes_of(&Self { map_sizes: other.map_sizes, ..*self }) == bytemuck::bytes_of(other)
+        let seen = Self { milky_way_size: other.milky_way_size, map_size: other.map_size, ..*self };
+        bytemuck::bytes_of(&seen) == bytemuck::bytes_of(other)
     }
 
     /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
@@ -157,36 +200,59 @@ impl FrameUniform {
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
         let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
-        let [hottest, least] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
+        let [least_profile_u, least_profile] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
         let [least_light, tolerance] = evenness(scene);
         let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u());
         let (matter, matter_count) = uniforms_of(&emitters.volumes);
         let u = 1.0 / frame.r;
         let CurveLevel { critical: [sin, cos], by_margin, .. } = CurveLevel::new(frame);
+        let [omega, q, root_sigma, root_sigma_d] = f32s(zamo(frame));
+        let SoftEdges { outer, inner } = emitters.disk.map(|thin| thin.edges).unwrap_or_default();
+        let plunge = scene.matter().plunge.map_or([0.0; 4], |p| [p.isco, p.energy, p.spin_term, p.x]);
+        let [plunge_isco, plunge_energy, plunge_spin_term, plunge_x] = f32s(plunge);
+        let occluder = scene.occluder.as_ref();
         Ok(Self {
-            right: with(lens.axes.x_axis, lens.mapping.pixel_angle),
-            up: with(lens.axes.y_axis, 0.0),
-            forward: with(lens.axes.z_axis, 0.0),
-            beta: with(lens.observer.beta, lens.observer.gamma),
-            e_r: with(frame.e_r, 0.0),
-            e_theta: with(frame.e_theta, 0.0),
-            e_phi: with(frame.e_phi, 0.0),
-            place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
-            zamo: zamo(frame),
-            hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
-            sky_x: with(sky.x_axis, scene.sky.stars_brightness),
-            sky_y: with(sky.y_axis, scene.sky.map_brightness),
-            sky_z: with(sky.z_axis, least_patch(lens.mapping.pixel_angle)),
-            disk: four(
-                emitters.disk.map_or(disk.temperature, |thin| thin.hottest),
-                BlackbodyTable::shared().ln_luminance(disk.temperature),
-                disk.opacity,
-                disk.brightness,
-            ),
-            size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
-            turbulence: turbulence
-                .map_or(Vec4::ZERO, |t| four(t.strength, t.reference_delay, t.fades_inside.unwrap_or(-1e30), 0.0)),
-            critical: four(sin, cos, f64::from(u8::from(by_margin)), 0.0),
+            right: lens.axes.x_axis.as_vec3(),
+            pixel_angle: lens.mapping.pixel_angle as f32,
+            up: padded(lens.axes.y_axis),
+            forward: padded(lens.axes.z_axis),
+            beta: lens.observer.beta.as_vec3(),
+            gamma: lens.observer.gamma as f32,
+            e_r: padded(frame.e_r),
+            e_theta: padded(frame.e_theta),
+            e_phi: padded(frame.e_phi),
+            observer_u: u as f32,
+            observer_sine: frame.sin as f32,
+            observer_cosine: frame.cos as f32,
+            lapse: if frame.rain { (2.0 * u).sqrt() } else { frame.lapse } as f32,
+            omega,
+            q,
+            root_sigma,
+            root_sigma_d,
+            spin: a as f32,
+            r_plus: horizon_outer(a) as f32,
+            r_minus: horizon_inner(a) as f32,
+            signed_isco: if disk.retrograde { -isco } else { isco } as f32,
+            sky_x: sky.x_axis.as_vec3(),
+            stars_brightness: scene.sky.stars_brightness as f32,
+            sky_y: sky.y_axis.as_vec3(),
+            map_brightness: scene.sky.map_brightness as f32,
+            sky_z: sky.z_axis.as_vec3(),
+            least_patch: least_patch(lens.mapping.pixel_angle) as f32,
+            disk_hottest: emitters.disk.map_or(disk.temperature, |thin| thin.hottest) as f32,
+            disk_log_reference: BlackbodyTable::shared().ln_luminance(disk.temperature) as f32,
+            disk_opacity: disk.opacity as f32,
+            disk_brightness: disk.brightness as f32,
+            size: f32s([lens.mapping.width, lens.mapping.height]),
+            step: settings.step as f32,
+            tolerance: settings.tolerance as f32,
+            turbulence_strength: turbulence.map_or(0.0, |t| t.strength as f32),
+            turbulence_delay: turbulence.map_or(0.0, |t| t.reference_delay as f32),
+            turbulence_fades_inside: turbulence.map_or(0.0, |t| t.fades_inside.unwrap_or(-1e30) as f32),
+            unused_after_turbulence: 0,
+            critical: f32s([sin, cos]),
+            critical_by_margin: by_margin.into(),
+            unused_after_critical: 0,
             disk_u: range(emitters.disk_u()),
             opaque_u: range(settings.opaque_u),
             capture_u: settings.capture_u as f32,
@@ -195,22 +261,29 @@ impl FrameUniform {
             rain: u32::from(frame.rain) + u32::from(frame.clock() == Clock::Rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            pattern: turbulence.map_or([0; 2], |t| [t.bands.seed, t.bands.first as u32]),
-            map_sizes: [1; 4],
+            pattern_seed: turbulence.map_or(0, |t| t.bands.seed),
+            first_band: turbulence.map_or(0, |t| t.bands.first),
+            milky_way_size: [1; 2],
+            map_size: [1; 2],
             projection: lens.mapping.projection as u32,
             medium_layer: crossings,
             plane_u: range(emitters.plane_u()),
-            soft_edges: emitters.disk.map_or(Vec4::ZERO, |thin| {
-                let SoftEdges { outer, inner } = thin.edges;
-                four(outer[0], outer[1], inner[0], inner[1])
-            }),
-            surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
-            shown_edges: four(edges.least[0], edges.least[1], least_light, tolerance),
-            occluder: scene.occluder.as_ref().map_or(four(0.0, 0.0, 1.0, 0.0), |occluder| {
-                let [x, y] = occluder.origin.map(f64::from);
-                four(x, y, scene.hole.mass, f64::from(u8::from(occluder.lensed)))
-            }),
-            plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
+            soft_outer: f32s(outer),
+            soft_inner: f32s(inner),
+            limb_darkened: u32::from(disk.emission_law == EmissionLaw::LimbDarkened),
+            least_profile_u: least_profile_u as f32,
+            least_profile: least_profile as f32,
+            unused_after_profile: 0,
+            shown_edges: f32s(edges.least),
+            least_light: least_light as f32,
+            half_tolerance: tolerance as f32,
+            plunge_isco,
+            plunge_energy,
+            plunge_spin_term,
+            plunge_x,
+            occluder_origin: occluder.map_or([0.0; 2], |occluder| occluder.origin.map(|v| v as f32)),
+            hole_mass: occluder.map_or(1.0, |_| scene.hole.mass as f32),
+            occluder_lensed: f32::from(occluder.is_some_and(|occluder| occluder.lensed)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),
             depth_u: range(emitters.depth_u()),
             matter_count,

@@ -4,92 +4,124 @@
 
 use crate::emit::glow::Glow;
 use crate::emit::matter::{SpotMatter, VolumeMatter};
+use crate::emit::shape::Reach;
 use crate::emit::volumes::Volumes;
 use crate::gpu::kernel::sizes::MOST_MATTER;
 use crate::gpu::kernel::variant::{MatterVariant, MotionCode, SHAPE_SPOT};
 use crate::physics::flow::{Flow, Motion};
 use crate::scene::{Scene, View};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec4, Vec4};
+use glam::Vec3;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct MatterUniform {
-    kind: [u32; 4],
-    reach: Vec4,
-    radii: Vec4,
-    form: Vec4,
-    motion: Vec4,
-    glow: Vec4,
-    light: Vec4,
-    tint: Vec4,
+    shape: u32,
+    motion: u32,
+    power_law: u32,
+    size: f32,
+    u_outer: f32,
+    u_inner: f32,
+    most_cosine: f32,
+    sense: f32,
+    inner: f32,
+    outer: f32,
+    radius: f32,
+    width: f32,
+    thickness: f32,
+    opening: f32,
+    slope: f32,
+    isco: f32,
+    law: [f32; 2],
+    azimuth: f32,
+    angular_velocity: f32,
+    absorption: f32,
+    temperature: f32,
+    reference_radius: f32,
+    temperature_slope: f32,
+    log_reference: f32,
+    spectral_index: f32,
+    brightness: f32,
+    least_density: f32,
+    tint: Vec3,
+    unused: u32,
 }
 
 #[cfg(test)]
 pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
     use crate::gpu::kernel::layout::layout;
-    layout!(MatterUniform as "Matter": kind, reach, radii, form, motion, glow, light, tint)
+    layout!(MatterUniform as "Matter": shape, motion, power_law, size, u_outer, u_inner, most_cosine, sense, inner,
+        outer, radius, width, thickness, opening, slope, isco, law, azimuth, angular_velocity, absorption,
+        temperature, reference_radius, temperature_slope, log_reference, spectral_index, brightness, least_density,
+        tint)
 }
 
-fn four(x: f64, y: f64, z: f64, w: f64) -> Vec4 {
-    DVec4::new(x, y, z, w).as_vec4()
-}
-
-fn motion_of(flow: &Flow) -> (MotionCode, Vec4) {
+fn motion_of(flow: &Flow) -> (MotionCode, [f64; 2]) {
     match flow.motion {
-        Motion::Keplerian { sub_keplerian, infall } => (MotionCode::Keplerian, four(sub_keplerian, infall, 0.0, 0.0)),
-        Motion::AngularMomentum { l0 } => (MotionCode::AngularMomentum, four(l0, 0.0, 0.0, 0.0)),
-        Motion::Rigid { angular_velocity } => (MotionCode::Rigid, four(angular_velocity, 0.0, 0.0, 0.0)),
-        Motion::Outflow { speed, base } => (MotionCode::Outflow, four(speed, base, 0.0, 0.0)),
+        Motion::Keplerian { sub_keplerian, infall } => (MotionCode::Keplerian, [sub_keplerian, infall]),
+        Motion::AngularMomentum { l0 } => (MotionCode::AngularMomentum, [l0, 0.0]),
+        Motion::Rigid { angular_velocity } => (MotionCode::Rigid, [angular_velocity, 0.0]),
+        Motion::Outflow { speed, base } => (MotionCode::Outflow, [speed, base]),
     }
 }
 
 impl MatterUniform {
-    /// `reach`: 1/r, outer end first, |cos th|, and the least density.
-    fn new(shape: u32, flow: &Flow, glow: &Glow, reach: [f64; 4], radii: Vec4, form: Vec4) -> Self {
-        let [u_outer, u_inner, cos, least] = reach;
-        let (motion, numbers) = motion_of(flow);
-        let [red, green, blue] = glow.tint;
+    /// The numbers that volumes and spots share; those of the shape are 0.
+    fn new(shape: u32, flow: &Flow, glow: &Glow, reach: &Reach, least_density: f64) -> Self {
+        let (motion, law) = motion_of(flow);
         Self {
-            kind: [shape, motion as u32, u32::from(glow.power_law), 0],
-            reach: four(u_outer, u_inner, cos, flow.sense),
-            radii,
-            form: form.with_w(flow.isco as f32),
-            motion: numbers,
-            glow: four(glow.absorption, glow.temperature, glow.reference_radius, glow.temperature_slope),
-            light: four(glow.log_reference, glow.spectral_index, glow.brightness, least),
-            tint: four(red, green, blue, 0.0),
+            shape,
+            motion: motion as u32,
+            power_law: glow.power_law.into(),
+            u_outer: reach.u[0] as f32,
+            u_inner: reach.u[1] as f32,
+            most_cosine: reach.cos as f32,
+            sense: flow.sense as f32,
+            isco: flow.isco as f32,
+            law: law.map(|v| v as f32),
+            absorption: glow.absorption as f32,
+            temperature: glow.temperature as f32,
+            reference_radius: glow.reference_radius as f32,
+            temperature_slope: glow.temperature_slope as f32,
+            log_reference: glow.log_reference as f32,
+            spectral_index: glow.spectral_index as f32,
+            brightness: glow.brightness as f32,
+            least_density: least_density as f32,
+            tint: Vec3::from_array(glow.tint.map(|v| v as f32)),
+            ..Self::zeroed()
         }
     }
 }
 
 impl From<&VolumeMatter> for MatterUniform {
     fn from(volume: &VolumeMatter) -> Self {
-        let (cloud, reach) = (&volume.cloud, &volume.reach);
-        Self::new(
-            cloud.shape as u32,
-            &volume.flow,
-            &volume.glow,
-            [reach.u[0], reach.u[1], reach.cos, volume.least],
-            four(cloud.inner, cloud.outer, cloud.radius, cloud.width),
-            four(cloud.thickness, cloud.opening, cloud.slope, 0.0),
-        )
+        let cloud = &volume.cloud;
+        Self {
+            inner: cloud.inner as f32,
+            outer: cloud.outer as f32,
+            radius: cloud.radius as f32,
+            width: cloud.width as f32,
+            thickness: cloud.thickness as f32,
+            opening: cloud.opening as f32,
+            slope: cloud.slope as f32,
+            ..Self::new(cloud.shape as u32, &volume.flow, &volume.glow, &volume.reach, volume.least)
+        }
     }
 }
 
 impl From<&SpotMatter> for MatterUniform {
     fn from(spot: &SpotMatter) -> Self {
-        let reach = &spot.reach;
-        Self::new(
-            SHAPE_SPOT,
-            &spot.flow,
-            &spot.glow,
-            // Shaders leave out what is less; beyond its cut a spot is nothing.
-            [reach.u[0], reach.u[1], reach.cos, f64::from(f32::MIN_POSITIVE)],
-            four(spot.radius, spot.size, spot.azimuth, spot.angular_velocity),
+        // Shaders leave out what is less; beyond its cut a spot is nothing.
+        let least = f64::from(f32::MIN_POSITIVE);
+        Self {
+            radius: spot.radius as f32,
+            size: spot.size as f32,
+            azimuth: spot.azimuth as f32,
+            angular_velocity: spot.angular_velocity as f32,
             // Shaders divide by the thickness of everything.
-            four(1.0, 0.0, 0.0, 0.0),
-        )
+            thickness: 1.0,
+            ..Self::new(SHAPE_SPOT, &spot.flow, &spot.glow, &spot.reach, least)
+        }
     }
 }
 
@@ -121,11 +153,10 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
     };
     variant.alone = volumes.is_alone();
     for matter in &all[..count as usize] {
-        let [shape, motion, power_law, _] = matter.kind;
-        variant.shapes |= 1 << shape;
-        variant.motions |= 1 << motion;
-        variant.power_law |= power_law != 0;
-        variant.thermal |= power_law == 0;
+        variant.shapes |= 1 << matter.shape;
+        variant.motions |= 1 << matter.motion;
+        variant.power_law |= matter.power_law != 0;
+        variant.thermal |= matter.power_law == 0;
     }
     Some(variant)
 }
