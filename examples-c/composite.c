@@ -292,7 +292,7 @@ static void own_sky(const double d[3], double out[3]) {
     const double centre[3] = {0.2425, -0.9640, 0.1090}, pole[3] = {0.30, 0.10, 0.9487}, sun[3] = {-0.62, 0.55, 0.56};
     const double radius = 0.12, along = dot(d, centre), off2 = 1.0 - along * along;
     if (along > 0.0 && off2 < radius * radius) {
-        /* As seen from far away, the part of its surface in that direction. */
+        /* The normal of the planet's surface in that direction, by parallel rays: the planet is far away. */
         double normal[3] = {-centre[0], -centre[1], -centre[2]}, aside[3];
         memcpy(aside, d, sizeof aside);
         add(aside, -along, centre);

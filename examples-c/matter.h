@@ -26,7 +26,7 @@ BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind);
  * where the text does not say. 0, or an exit status after a message on stderr. Ranges are left to the library. */
 int volume_read(const char *name, const char *text, double turbulence, BhrVolume *out);
 
-/* The same for a hot spot, without a kind; its words are retrograde and thermal. */
+/* Reads a hot spot, as volume_read reads a volume, but without a kind; its words are retrograde and thermal. */
 int hot_spot_read(const char *name, const char *text, BhrHotSpot *out);
 
 /* All texts of an option, in their order. *out_count: how many; more than `most` are refused. 0, or an exit status. */

@@ -25,7 +25,8 @@ const char *option_read_double(const char *text, double *out) {
     return end;
 }
 
-/* As option_read_double, digits only: strtoull alone would take "-1" for a large number. */
+/* Reads a whole number up to `most`, digits only: strtoull alone would take "-1" for a large number. Returns
+ * the end of the number, or NULL. */
 static const char *read_whole(const char *text, uint64_t most, uint64_t *out) {
     char *end;
     if (!isdigit((unsigned char)text[0])) {

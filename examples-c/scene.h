@@ -51,8 +51,8 @@ BhrStatus scene_init(Scene *scene, const SceneOptions *options);
 /* The look alone, disk, sky, film and effects, of a preset, as the context has it then. Errors: as the library's. */
 BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset);
 
-/* The same with the look's volumes: which matter `options` ask for (bhr_set_preset_with); *out_matter is THIN or DEEP.
- * Errors: as the library's. */
+/* The look with its volumes: `options` ask for its matter (bhr_set_preset_with); *out_matter is THIN or DEEP. Errors:
+ * as the library's. */
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                 BhrPresetMatter *out_matter);
 

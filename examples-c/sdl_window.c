@@ -206,7 +206,7 @@ static void handle_event(Program *p, const SDL_Event *event) {
     }
 }
 
-/* Nothing slows down a loop whose frames are skipped: it waits. */
+/* Waits for an event where frames are skipped: presenting then no longer slows the loop down. */
 static void handle_events(Program *p) {
     SDL_Event event;
     int       some = p->skipped ? SDL_WaitEventTimeout(&event, SKIPPED_WAIT_MS) : SDL_PollEvent(&event);

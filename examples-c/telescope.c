@@ -129,7 +129,7 @@ static void widen(const unsigned char *from, unsigned char *to, size_t stride, u
     }
 }
 
-/* The same in a square about each marked point. `room` and `to` have room for all. */
+/* Marks a square about each marked point. `room` and `to` have room for all points. */
 static void widen_all(const unsigned char *from, unsigned char *room, unsigned char *to, uint32_t side,
                       uint32_t reach) {
     for (uint32_t i = 0; i < side; i++) {

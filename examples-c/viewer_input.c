@@ -54,7 +54,8 @@ static void change_turbulence(Viewer *v, double by) {
     SAY(v, "turbulence of the disk %.2f", v->scene.disk.turbulence);
 }
 
-/* As the viewer began; then each kind of volume, instead of the thin disk but for the jet, which comes from it. */
+/* Goes on to the next kind of volume, which takes the thin disk's place but for the jet, which comes from it; after the
+ * last one to the matter that the viewer began with. */
 static void cycle_matter(Viewer *v, double unused) {
     (void)unused;
     v->matter = v->matter < 0 || VOLUME_KINDS[v->matter].name == NULL ? 0 : v->matter + 1;

@@ -19,7 +19,7 @@ typedef struct Recorder {
 /* Renders the context's scene and saves it. 1, or 0 after a message. */
 int picture_save(BhrContext *context, uint32_t width, uint32_t height, const char *path);
 
-/* As picture_save, as viewer-0001.png or the next free number, in the working folder; says where. */
+/* Saves a picture (picture_save) as viewer-0001.png or the next free number, in the working folder; says where. */
 int picture_save_numbered(BhrContext *context, uint32_t width, uint32_t height);
 
 /* Begins a film in a new folder, viewer-film-01 or the next free number; says where. 1, or 0 after a message. */

@@ -31,7 +31,7 @@ void governor_init(Governor *governor, double rate, double scale);
 /* Lays scale, samples and the resolution of matter for the next frame over the user's quality. */
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality);
 
-/* The same for a picture that is saved. */
+/* Lays the samples and the resolution of matter of a picture that is saved over the user's quality. */
 void governor_choose_for_picture(const Governor *governor, BhrQuality *quality);
 
 /* Hears what a presented frame cost: `seconds` from the last frame's end to this one's (0: there was a pause between),

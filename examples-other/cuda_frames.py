@@ -291,7 +291,7 @@ def different_in_cuda(frames, stream, expected):
 
 
 def different_in_tensor(torch, frames, expected):
-    """The same of a tensor over the same memory."""
+    """How many bytes of the frame are others in a tensor over its memory."""
     tensor = torch.as_tensor(frames, device="cuda")
     if tensor.data_ptr() != frames.pointer.value:
         raise Failure("torch.as_tensor has made a copy")

@@ -82,7 +82,7 @@ pub fn collected<T>(items: impl Iterator<Item = T>, what: &str) -> Result<Vec<T>
 /// Appends an item to a vector whose length is not known beforehand. Errors: OUT_OF_MEMORY, naming `what`.
 pub fn push<T>(items: &mut Vec<T>, item: T, what: &str) -> Result<()> {
     if items.len() == items.capacity() {
-        // It grows by half, as growing by one item at a time would copy all items each time.
+        // Grows the list by half: growing by one item at a time would copy all items each time.
         reserve(items, (items.len() / 2).max(16), what)?;
     }
     items.push(item);

@@ -25,9 +25,9 @@ pub struct Holding(std::marker::PhantomData<*const ()>);
 /// The fate of work that was handed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It has run, or will when the outermost [`Holding`] ends.
+    /// The work has run, or will when the outermost [`Holding`] ends.
     Taken,
-    /// It will never run: there is no room for it.
+    /// The work will never run: there is no room for it.
     NoRoom,
 }
 

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use worker::JobQueue;
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Nothing under these locks is left half done by a panic.
+    // A panic under these locks leaves nothing half done, so poison says nothing.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

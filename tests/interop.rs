@@ -149,7 +149,7 @@ fn what_never_comes_loses_its_own_context_only() {
     drop(stuck);
     assert!(began.elapsed() < Duration::from_secs(30), "it ended after {:?}", began.elapsed());
 
-    // The same with a frame behind it, which some drivers would wait for in the call.
+    // Once more, with a frame behind it, which some drivers would wait for in the call.
     let stuck = Shared::new();
     stuck.works(1);
     assert_eq!(stuck.frame(10, 11, &mut null_mut()), BHR_OK);

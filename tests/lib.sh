@@ -6,7 +6,7 @@
 tests=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(dirname -- "$tests")
 
-# As cargo does, takes a relative CARGO_TARGET_DIR from where it is called.
+# Takes a relative CARGO_TARGET_DIR from where it is called, as cargo does.
 case ${CARGO_TARGET_DIR:-} in
     "") target=$root/target ;;
     /*) target=$CARGO_TARGET_DIR ;;

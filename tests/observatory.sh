@@ -39,7 +39,7 @@ observatory_image() {
         picture "$folder/m87-230GHz.png" 648x648 50
 }
 
-# As those read the files who use them.
+# Reads the files with astropy, as observers do.
 observatory_astropy() {
     python3 -m venv "$scratch/astropy" && "$scratch/astropy/bin/pip" install --quiet astropy &&
         "$scratch/astropy/bin/python" "$tests/observatory/astropy_reads.py" "$scratch/observatory"/*.fits

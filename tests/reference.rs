@@ -53,7 +53,7 @@ fn shadows() {
             let observer = Observer::free_fall(frame(r));
             close(shadow(&observer).radius, number(case, "psi_shadow"), 1e-12, &format!("{key} {r}"));
             if r > 2.0 {
-                // The same observer as one that moves against the static frame.
+                // The falling observer, stated as one that moves against the static frame.
                 let boosted = Observer::moving(frame(r), DVec3::new(-number(case, "beta"), 0.0, 0.0));
                 close(shadow(&boosted).radius, number(case, "psi_shadow"), 1e-9, &format!("{key} {r} boosted"));
             }

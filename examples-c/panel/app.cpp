@@ -182,7 +182,7 @@ double App::picture_scale(double now) const {
     return std::clamp(std::floor(scale * 16.0) / 16.0, COARSEST, frame_settings_.scale);
 }
 
-// As many as there is room for, if there is something new to show.
+// Submits pictures as long as there is room, if there is something new to show.
 void App::submit_picture(double now) {
     const double scale = picture_scale(now);
     const auto   size = [scale](uint32_t whole) {
@@ -193,7 +193,7 @@ void App::submit_picture(double now) {
         const bool changed = wanted.version != submitted_of_.version || wanted.width != submitted_of_.width ||
                              wanted.height != submitted_of_.height;
         const bool counting = counted() && submitted_ < options_.frames;
-        // Those that were counted are shown before any others are made.
+        // The last counted picture is held on the screen before any further one is made.
         if (counted() && !counting && hold_until_ < 0.0) {
             return;
         }

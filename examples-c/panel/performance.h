@@ -12,7 +12,7 @@ class Performance {
 public:
     // A picture came into the program's memory. Times are on the program's clock.
     void finished(const BhrFrameStats &stats, double submitted);
-    // It was shown.
+    // A picture was shown.
     void shown(double submitted, double now);
 
     void draw(const BhrAdapterInfo &adapter, size_t in_flight, unsigned recoveries) const;

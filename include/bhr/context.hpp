@@ -472,7 +472,7 @@ class Context {
         }
         return hits;
     }
-    /// The same into memory of the caller's, which has room for as many hits as there are rays.
+    /// Traces rays into memory of the caller's, which has room for as many hits as there are rays.
     Result<void> trace(span<const Ray> rays, span<Hit> hits) {
         static_assert(sizeof(Ray) == sizeof(BhrRay) && sizeof(Hit) == sizeof(BhrHit));
         if (hits.size() < rays.size()) {

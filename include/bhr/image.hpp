@@ -21,7 +21,7 @@ namespace bhr {
 #ifdef __cpp_lib_span
 template <class T> using span = std::span<T>;
 #else
-/// As std::span of C++20, as far as bhr.hpp needs it: elements that lie one after the other, and belong to others.
+/// The part of C++20's std::span that bhr.hpp needs: elements that lie one after the other, and belong to others.
 template <class T> class span {
   public:
     using element_type = T;

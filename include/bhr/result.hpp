@@ -245,7 +245,7 @@ inline Result<void> result(BhrStatus status) {
     return {};
 }
 
-/// The same with the value that it has filled in.
+/// The value that a call has filled in, or the error of its status.
 template <class T> Result<T> result(BhrStatus status, T value) {
     if (status < 0) {
         return Error::last(status);
@@ -261,7 +261,7 @@ template <class Function> Result<void> call(Function &&function) {
     return done;
 }
 
-/// The same for a function that fills in `value`.
+/// Calls a C function that fills in `value`, and may run functors: the value, or the error of its status.
 template <class T, class Function> Result<T> ask(T value, Function &&function) {
     const Call inside;
     const BhrStatus status = function(value);

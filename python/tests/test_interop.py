@@ -266,7 +266,7 @@ def test_bad_arguments(gpu):
     ):
         with pytest.raises(ValueError):
             call()
-    # Nothing of it is left.
+    # The refused calls have left nothing behind: the target can be rendered into.
     assert interop.render(gpu, target).result(timeout=60) is target
 
 

@@ -63,7 +63,7 @@ fn begin_ray(look: vec3<f32>) -> RayBegin {
     return begin;
 }
 
-// The same for a look direction in the local frame; frequency_ratio is 1.
+// The ray along a look direction in the local frame; frequency_ratio is 1.
 fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
@@ -152,7 +152,7 @@ fn plunging_frequency(c: Constants, u: f32, du: f32) -> f32 {
     return select(inwards, outwards, du >= 0.0) - frame.plunge_x * x * u2;
 }
 
-// The same, matter being on its circular orbit (physics::orbit::redshift).
+// g of the disk's matter on its circular orbit (physics::orbit::redshift).
 fn redshift_of(c: Constants, u: f32) -> f32 {
     let v = sign(frame.signed_isco) * u * sqrt(u);
     return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0))

@@ -25,7 +25,7 @@ fn light_is_even(bends: vec4<f32>, darkest: vec2<f32>, least: f32, tolerance: f3
     return all(bends <= tolerance * vec4<f32>(vec3<f32>(darkest.x + least), darkest.y + HALF_LEAST_SHARE));
 }
 
-// The same for I_nu and optical depth.
+// Whether I_nu and optical depth are even enough that bend so. `least`: of either at the four blocks nearest.
 fn depth_is_even(bends: vec2<f32>, least: vec2<f32>, tolerance: f32) -> bool {
     return all(bends <= tolerance * vec2<f32>(least.x, least.y + HALF_LEAST_DEPTH));
 }

@@ -78,7 +78,7 @@ fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow
     let at = place_at(c, u, cosine);
     let velocity = flow_velocity(c, at, frame.matter[0]);
     let nu = measured_by(zamo_light(c, at, du), velocity) / c.nu_local;
-    // Nothing can move so where this fails, NaN among it.
+    // No motion has such a frequency where this fails; NaN fails it as well.
     let g = select(0.0, ratio / nu, nu > 0.0 && nu < 1e30 && u == exact);
     let r = 1.0 / u;
     return Slow(vec4<f32>(log(r), cosine, azimuth, later),

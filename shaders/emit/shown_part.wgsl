@@ -54,7 +54,7 @@ fn shown_stretch(c: Constants, from_state: State, begin: f32, end: f32) -> vec2<
         let x = low + (high - low) * (at_low / (at_low - at_high));
         seen = select(vec2<f32>(begin, x), vec2<f32>(x, end), before);
     }
-    // As add_part counts the others.
+    // The part left out turns the ray as well: add_part counts the part that is seen.
     let left_out = abs(end - begin) - abs(seen.y - seen.x);
     ray_swept += left_out * min(sqrt(max(c.k, 0.0)), c.scale);
     return seen;

@@ -325,7 +325,7 @@ fn coefficients_at(
                 let there = CloudPlace(r, cosine, azimuth, later);
                 structure = cloud_pattern(k, there, angular_velocity(c.a, at, velocity), Blur(width, 0.0));
             }
-            // Nothing can move so where this fails, NaN among it.
+            // No motion has such a frequency where this fails; NaN fails it as well.
             if nu > 0.0 && nu < 1e30 {
                 let g = ratio / nu;
                 var shift = Shift(g, g);

@@ -74,7 +74,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     return record;
 }
 
-// It has its sky.
+// A deferred pixel's record comes with its sky.
 fn with_sky(record: Record) -> Record {
     return record;
 }

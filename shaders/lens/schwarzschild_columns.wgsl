@@ -14,7 +14,7 @@
 @group(0) @binding(3) var swept_out: texture_storage_2d<rgba32float, write>;
 // u and du/dy at the begin of interval j of y, then at its end. x: node, y: j, layer: branch.
 @group(0) @binding(4) var u_out: texture_storage_2d_array<rgba32float, write>;
-// The same of the delay's integral.
+// The delay's integral and its derivative by y, at the same nodes and intervals.
 @group(0) @binding(5) var delay_out: texture_storage_2d_array<rgba32float, write>;
 
 @compute @workgroup_size(32)

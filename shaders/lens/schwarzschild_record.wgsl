@@ -28,7 +28,7 @@ struct Lookup {
     place: AxisPosition,
     // The angle about the hole from the observer to the end of the ray, rad.
     swept: f32,
-    // The same to its first crossing of the plane.
+    // The angle from the observer to the ray's first crossing of the plane, rad.
     first: f32,
     // The number of the next crossing.
     order: u32,

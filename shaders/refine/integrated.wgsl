@@ -81,7 +81,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
         begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,
         vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.has_light {
-        // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
+        // The disk may cover but a part of the sample's cell, and then hides nothing behind it.
         let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
         let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
             frame.capture_u, opaque_u);

@@ -131,7 +131,7 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
         if in_quarters() && is_ragged() {
-            // It turns out to need the samples of EDGE_CURVE.
+            // A ragged pixel needs the samples of EDGE_CURVE, which are taken later.
             note_edges(id, EDGE_CURVE);
         } else {
             take_light(id, mean_light());

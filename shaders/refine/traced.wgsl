@@ -8,7 +8,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     return integrated_record(id);
 }
 
-// It has its sky.
+// A traced sample's record comes with its sky.
 fn with_sky(record: Record) -> Record {
     return record;
 }

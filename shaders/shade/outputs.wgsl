@@ -22,7 +22,7 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-// As in shade/shade.wgsl.
+// The tables of light, as shade/shade.wgsl has them.
 @group(0) @binding(2) var light_tables: texture_2d<f32>;
 
 const NOTHING: u32 = 0x7fc00000u;

@@ -27,7 +27,7 @@ fn shifted_blackbody(temperature: f32, log_reference: f32, g_colour: f32, g_beam
     return shifted_light(BLACKBODY_OFFSET, temperature, log_reference, g_colour, g_beaming);
 }
 
-// The same with the table that begins at entry `first`.
+// Thermal light by the rule of colour and beaming, by the table that begins at entry `first`.
 fn shifted_light(first: u32, temperature: f32, log_reference: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     let observed = temperature * g_colour;
     // Found in any case: a branch would keep GPUs from waiting for several at once.

@@ -52,7 +52,7 @@ struct Frame {
     disk_brightness: f32,
     // The size of the full frame, pixels.
     size: vec2<f32>,
-    // Of integration: the step in sigma, and the tolerance.
+    // The integration's step in sigma, and its tolerance.
     step: f32,
     tolerance: f32,
     // Strength, delay of light of the reference time (M), and ln r inside which it fades out (-1e30: nowhere), of

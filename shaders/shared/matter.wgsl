@@ -31,7 +31,7 @@ struct Matter {
     // Numbers of the law of motion. KEPLERIAN: sub_keplerian, infall; ANGULAR_MOMENTUM: l0, 0; RIGID: angular velocity,
     // 0; OUTFLOW: speed, base.
     law: vec2<f32>,
-    // Of a spot: azimuth at the frame's time, and angular velocity towards +phi, rad/M.
+    // A spot's azimuth at the frame's time, and its angular velocity towards +phi, rad/M.
     azimuth: f32,
     angular_velocity: f32,
     // Absorption per M at density 1; temperature, K, at the reference radius, and the power of r that it falls by.

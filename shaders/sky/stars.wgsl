@@ -56,7 +56,7 @@ fn cell_of(direction: vec3<f32>, level: u32) -> u32 {
 // The share of a star's light that a pixel at `p` from it gets: a round bump over what it sums to.
 fn star_footprint(p: vec2<f32>) -> f32 {
     let bump = max(1.0 - dot(p, p) / (STAR_RADIUS * STAR_RADIUS), 0.0);
-    // It is to be known to some 1e-4, so that the driver's cos will do.
+    // The footprint is to be known to some 1e-4, so that the driver's cos will do.
     let c = cos(TAU * p);
     let sum = 1.0 + STAR_RIPPLE.x * (c.x + c.y) + STAR_RIPPLE.y * c.x * c.y + 2.0 * STAR_RIPPLE.z * (dot(c, c) - 1.0);
     return STAR_PEAK * bump * bump * bump / sum;

@@ -12,7 +12,7 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-// Those of traced/layout.wgsl: of pixels, and of blocks.
+// Records in the layout of traced/layout.wgsl: of pixels, and of blocks.
 @group(0) @binding(2) var record_meta: texture_2d<u32>;
 @group(0) @binding(3) var block_meta: texture_2d<u32>;
 @group(0) @binding(4) var block_disk: texture_2d_array<f32>;

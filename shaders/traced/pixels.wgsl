@@ -21,7 +21,7 @@
 @group(0) @binding(2) var record_sky: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(3) var record_meta: texture_storage_2d<rgba32uint, write>;
 @group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
-// As in shade/shade.wgsl: matter with depth reads blackbodies there.
+// The tables of light, as shade/shade.wgsl has them: matter with depth reads blackbodies there.
 @group(0) @binding(5) var light_tables: texture_2d<f32>;
 // The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
 @group(0) @binding(6) var<storage, read> clouds: Clouds;
@@ -96,7 +96,7 @@ fn keep_medium() {
 // After a pixel has been traced anew: its record may hold a crossing more than are found now, by rounding, and a medium
 // before it.
 fn keep_nothing_more() {
-    // As many crossings are kept at most.
+    // The medium's layer is also the number of crossings that are kept at most.
     for (var k = countOneBits(disk_orders) + 1u; k <= not_inlined(frame.medium_layer); k += 1u) {
         textureStore(record_disk, pixel, frame.medium_layer + k, NO_MEDIUM);
     }

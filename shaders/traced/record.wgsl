@@ -16,8 +16,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
-    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.polar_momentum / frame.observer_u, m.energy, 0.0,
-        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.polar_momentum / frame.observer_u, m.energy,
+        0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if m.fate == FATE_ESCAPED {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;

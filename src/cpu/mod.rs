@@ -30,7 +30,7 @@ pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
     lenses: Box<LensCache>,
-    /// The same of frames of outputs, which ask more of tables.
+    /// Lens tables for frames of outputs, which need more of each ray.
     output_lenses: Box<LensCache>,
     /// The tables of the last frame, kept from frame to frame.
     stars: Option<Arc<StarIndex>>,

@@ -67,12 +67,12 @@ impl<'a> Recorder<'a> {
         self.trace_among(x, y, 1)
     }
 
-    /// The same, one of `rays` of a pixel.
+    /// The record of position (x, y), as one of `rays` of a pixel.
     pub fn trace_among(&self, x: f64, y: f64, rays: u32) -> Record {
         self.trace_with(x, y, self.emitters.needs().parts, rays)
     }
 
-    /// The same without the matter along the ray.
+    /// The record of position (x, y), without the matter along the ray.
     pub fn trace_bare(&self, x: f64, y: f64) -> Record {
         self.trace_with(x, y, false, 1)
     }

@@ -17,7 +17,7 @@ use rayon::ThreadPool;
 /// prompt progress, large enough to keep every core busy.
 const TILE_STEPS: u64 = 20 << 15;
 pub(super) const TILE_WIDTH: u32 = 1024;
-/// The same with matter at half resolution: nearer to a square, as more blocks are traced than the tile has.
+/// The width of tiles with matter at half resolution: nearer to a square, as more blocks are traced than the tile has.
 const TILE_WIDTH_HALF: u32 = 160;
 
 impl CpuTracer {

@@ -316,7 +316,7 @@ mod tests {
         }
     }
 
-    /// Nothing jumps when a generation comes or goes, nor at any other time; and what changes does so evenly.
+    /// The pattern does not jump when a generation comes or goes, nor at any other time, and it changes evenly.
     #[test]
     fn generations_come_and_go_unseen() {
         for time in [0.0, -600.0, 1e6] {

@@ -21,7 +21,7 @@ pub enum DiskReference {
 pub enum EmissionLaw {
     /// Alike in all directions.
     Isotropic = 0,
-    /// As an atmosphere that scatters by electrons (`physics::limb_darkening`).
+    /// By the law of an atmosphere that scatters by electrons (`physics::limb_darkening`).
     LimbDarkened = 1,
 }
 

@@ -335,7 +335,7 @@ mod tests {
         }
     }
 
-    /// The same on every machine: the sum of all texels, each with bits that its place moves.
+    /// Every machine draws the same filaments: compared by the sum of all texels, each with bits that its place moves.
     #[test]
     fn texels_are_always_the_same() {
         let again = Filaments::new(drawn().unwrap()).unwrap();

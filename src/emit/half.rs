@@ -28,9 +28,9 @@ pub const STENCIL: usize = 4;
 /// How far a line between blocks may be off, of what is interpolated: of the brightest of light's three components, of
 /// the share that passes, of I_nu, and of the optical depth.
 pub const TOLERANCE: f64 = 1.0 / 64.0;
-/// The same of matter that has structure. With 1/64 seven times as many pixels of a soft disk sum their own rays, for
-/// three quarters of the error; pictures at the scale of 3840 x 2160 differ from those at full resolution by .2 to .5
-/// of 255 (root mean square).
+/// The tolerance for matter that has structure. With 1/64 seven times as many pixels of a soft disk sum their own rays,
+/// for three quarters of the error; pictures at the scale of 3840 x 2160 differ from those at full resolution by .2 to
+/// .5 of 255 (root mean square).
 pub const STRUCTURE_TOLERANCE: f64 = 1.0 / 16.0;
 /// Light this dark, of what the film shows as white, the share that passes, and the optical depth are never told more
 /// exactly than values of this size.
@@ -40,7 +40,7 @@ pub const LEAST_DEPTH: f64 = 1e-3;
 
 /// The cubic's weights of four blocks in a row for a pixel a quarter of the way from the second to the third.
 pub const CUBIC: [f64; STENCIL] = [-7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0];
-/// The same of a line.
+/// A line's weights of four blocks in a row, for a pixel a quarter of the way from the second to the third.
 pub const LINE: [f64; STENCIL] = [0.0, 0.75, 0.25, 0.0];
 /// The share of a second difference by which a line is off a quarter of the way.
 pub const OFF_LINE: f64 = 3.0 / 32.0;
@@ -78,7 +78,7 @@ pub fn bend([a, b, c, d]: [f64; STENCIL]) -> f64 {
     0.5 * OFF_LINE * ((a - 2.0 * b + c).abs() + (b - 2.0 * c + d).abs())
 }
 
-/// The same amid 4 x 4 values, row by row: along the rows and along the columns.
+/// How far lines amid 4 x 4 values, row by row, may be off: along the rows and along the columns.
 fn bends(value: impl Fn(usize) -> f64) -> f64 {
     let across = |row: usize| bend(from_fn(|i| value(STENCIL * row + i)));
     let down = |column: usize| bend(from_fn(|i| value(STENCIL * i + column)));
@@ -92,7 +92,7 @@ pub fn light_is_even(bends: [f64; 4], darkest: [f64; 2], least: f64, tolerance: 
     (0..3).all(|c| bends[c] <= tolerance * (darkest[0] + least)) && bends[3] <= tolerance * (darkest[1] + LEAST_SHARE)
 }
 
-/// The same for I_nu and optical depth.
+/// Whether I_nu and optical depth are even enough that bend so. `least`: of either at the four blocks nearest.
 pub fn depth_is_even(bends: [f64; 2], least: [f64; 2], tolerance: f64) -> bool {
     bends[0] <= tolerance * least[0] && bends[1] <= tolerance * (least[1] + LEAST_DEPTH)
 }

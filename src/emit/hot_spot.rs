@@ -8,9 +8,9 @@ use crate::error::{Error, Number, Result};
 /// its shape, e^(-d^2 / 2 size^2) with d the distance from its centre in chart coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HotSpot {
-    /// It moves towards -phi.
+    /// Whether the spot moves towards -phi.
     pub retrograde: bool,
-    /// A blackbody's light instead of a power law of the frequency.
+    /// Whether its light is a blackbody's instead of a power law of the frequency.
     pub thermal: bool,
     /// The radius of its orbit. Inside the ISCO, where orbits are not stable, it is taken to be at the ISCO. Default 8.
     pub radius: f64,

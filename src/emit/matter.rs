@@ -25,7 +25,7 @@ pub(crate) const CLUMPED: f64 = 10.0;
 pub struct Accuracy {
     /// Cells for each length over which matter changes.
     pub fineness: f64,
-    /// The same beside places where it bends.
+    /// Cells for each such length beside places where matter bends.
     pub beside_bends: f64,
     /// Whether stretches that have structure are summed in even layers, not in cells: structure is so rough that
     /// polynomials gain nothing.

@@ -88,7 +88,8 @@ pub(crate) fn thin_gains(depths: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// The same, each node being a layer of its weight: of its own light (1 - e^-t) / t leaves it.
+/// The share of each node's light that leaves a stretch, each node being an even layer of its weight: of a layer's own
+/// light (1 - e^-t) / t leaves it.
 pub(crate) fn layer_gains(depths: [f64; 3]) -> [f64; 3] {
     let mut through = 1.0;
     [0, 1, 2].map(|i| {

@@ -207,7 +207,8 @@ impl DiskLight {
         self.opacity_at(crossing, self.disk.profile(&self.profile, crossing.u))
     }
 
-    /// The same where the disk's temperature is `profile`, in that of the hottest ring.
+    /// The share of the light from behind that a crossing hides, where the disk's temperature is `profile`, in that of
+    /// the hottest ring.
     fn opacity_at(&self, crossing: &Crossing, profile: f64) -> f64 {
         self.disk.disk.opacity * crossing.share * self.disk.edges.left(crossing.u, profile)
     }

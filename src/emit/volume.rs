@@ -40,7 +40,7 @@ pub struct Volume {
     pub flow: FlowLaw,
     /// DISK, JET: the inner edge; OUTFLOW: where matter is at rest. 0 (default): the ISCO.
     pub inner_radius: f64,
-    /// Nothing is beyond it, whatever the shape. Default 17.
+    /// The radius beyond which there is no matter, whatever the shape. Default 17.
     pub outer_radius: f64,
     /// TORUS: of the ring; HALO: the scale; JET: where it opens by `opening`. Default 8.
     pub radius: f64,

@@ -80,7 +80,7 @@ impl Seen {
         footprint(self.pixel_angle, place(observer).distance(place(there)), b, from, to, bend)
     }
 
-    /// The same `share` of a part farther along the ray. N turns by sqrt(K) per tau.
+    /// The view from farther along the ray, by `share` of a part. N turns by sqrt(K) per tau.
     pub fn after(&self, part: &Part<'_>, share: f64) -> Self {
         let turned = part.swept() * (part.constants.k.max(0.0).sqrt() / part.constants.scale).min(1.0);
         Self { swept: self.swept + share * turned, ..*self }
@@ -313,7 +313,7 @@ impl Volumes {
         };
         let mut add = |light: &ZamoLight, velocity: Velocity, glow: &Glow, density: f64, heat: f64| {
             let nu = light.measured_by(velocity) / c.nu_local;
-            // Nothing can move so where this fails, NaN among it.
+            // No motion has such a frequency where this fails; NaN fails it as well.
             if nu > 0.0 && nu.is_finite() {
                 let g = seen.frequency_ratio / nu;
                 let camera = seen.static_lapse.map_or(c.nu_local, |lapse| c.energy / lapse);
@@ -527,7 +527,7 @@ mod tests {
         }
     }
 
-    /// Nothing that lies within a reach is clipped away, and of a long stretch what is far from it is.
+    /// Clipping keeps all that lies within a reach, and takes away the parts of a long stretch that are far from it.
     #[test]
     fn clipping_keeps_the_reach() {
         let reach = Reach { u: [0.1, 0.2], cos: 0.3 };

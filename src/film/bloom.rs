@@ -222,8 +222,8 @@ impl Bloom {
         Ok(if bloom.beam.is_some() { bloom.through_beam(direct, scattered > 0.0) } else { bloom })
     }
 
-    /// The same with its shares as the beam needs them: all light that is spread less than the beam's level spreads it
-    /// goes through that level. Coarser ones are dropped where nothing else needs them.
+    /// The pyramid with its shares as the beam needs them: all light that is spread less than the beam's level spreads
+    /// it goes through that level. Coarser levels are dropped where nothing else needs them.
     fn through_beam(mut self, direct: f64, scatters: bool) -> Self {
         let Some(beam) = &self.beam else { return self };
         let through = (direct * beam.through) as f32;

@@ -42,7 +42,7 @@ impl GlTracer {
         &self.loss
     }
 
-    /// As [`GpuTracer::render`]; `progress` runs on this thread, `sink` on the other.
+    /// Renders a frame ([`GpuTracer::render`]); `progress` runs on this thread, `sink` on the other.
     pub fn render(
         &mut self,
         scene: &Scene,
@@ -53,7 +53,7 @@ impl GlTracer {
         self.call_with_progress(progress, |tracer, progress| tracer.render(scene, request, sink, progress))
     }
 
-    /// As [`GpuTracer::render_outputs`]; `progress` runs on this thread, `sink` on the other.
+    /// Renders outputs ([`GpuTracer::render_outputs`]); `progress` runs on this thread, `sink` on the other.
     pub fn render_outputs(
         &mut self,
         scene: &Scene,
@@ -67,7 +67,7 @@ impl GlTracer {
         })
     }
 
-    /// As [`GpuTracer::prepare`]; `progress` runs on this thread.
+    /// Makes what a frame needs ([`GpuTracer::prepare`]); `progress` runs on this thread.
     pub fn prepare(
         &mut self,
         scene: &Scene,
@@ -109,12 +109,12 @@ impl GlTracer {
         self.loss.check().and(Err(panic))
     }
 
-    /// As [`GpuTracer::trace_rays`].
+    /// Traces rays that the host gives ([`GpuTracer::trace_rays`]).
     pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         self.call(|tracer| tracer.trace_rays(scene, rays, hits))
     }
 
-    /// As [`GpuTracer::ray_records`].
+    /// The ray records of a frame's pixels ([`GpuTracer::ray_records`]).
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         self.call(|tracer| tracer.ray_records(scene, request))
     }

@@ -371,7 +371,7 @@ impl<'a> ImageMut<'a> {
         self.copiers = Some(copiers);
     }
 
-    /// The same pixels, for reading.
+    /// The image's pixels, for reading.
     pub fn as_image_ref(&self) -> ImageRef<'_> {
         ImageRef { rows: self.rows, memory: PhantomData }
     }

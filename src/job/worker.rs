@@ -393,7 +393,7 @@ fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame
     Ok((frame, tracer.device()))
 }
 
-/// The same once its signals are known to grow. Errors: INVALID_ARGUMENT.
+/// Begins the frame, once its signals are known to grow. Errors: INVALID_ARGUMENT.
 fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
     let JobTarget::Shared(SharedFrame { sync, .. }) = &job_request.target else {
         return Err(Error::internal("a frame for the host's memory on the host's thread"));

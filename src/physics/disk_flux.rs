@@ -43,10 +43,10 @@ pub fn page_thorne_maximum(a: f64) -> (f64, f64) {
 /// The flux of plunging matter, in the maximum of the Page-Thorne flux: inside the hottest ring the flux falls to this
 /// and stays there, through the ISCO to the horizon.
 ///
-/// It is a choice, not a solution. The Page-Thorne flux is 0 at the ISCO because no stress may act there; with some
-/// stress matter shines there, too (Agol & Krolik 2000, ApJ 528, 161). Matter that falls with the heat it has cools
-/// down to half the ISCO's radius and heats up again farther in (Mummery & Balbus 2023, MNRAS 521, 2439), which a flux
-/// that stays the same sums up.
+/// The value is a choice, not a solution. The Page-Thorne flux is 0 at the ISCO because no stress may act there; with
+/// some stress matter shines there, too (Agol & Krolik 2000, ApJ 528, 161). Matter that falls with the heat it has
+/// cools down to half the ISCO's radius and heats up again farther in (Mummery & Balbus 2023, MNRAS 521, 2439), which a
+/// flux that stays the same sums up.
 pub const PLUNGE_FLUX: f64 = 0.5;
 
 /// T(r) / T_max = (f / f_max)^(1/4), tabulated in f64: near the ISCO f32 could not evaluate f.

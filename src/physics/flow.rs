@@ -40,7 +40,7 @@ impl Place {
         Self::beside(a, [horizon_outer(a), horizon_inner(a)], u, cos)
     }
 
-    /// The same along a ray, whose constants know the radii of the horizons.
+    /// A place at 1/r = `u` along a ray, whose constants know the radii of the horizons; `cos` of theta.
     pub fn on_ray(c: &Constants, u: f64, cos: f64) -> Self {
         Self::beside(c.a, [c.r_plus, c.r_minus], u, cos)
     }
@@ -100,8 +100,8 @@ impl ZamoLight {
 
     /// -p.U, the frequency that matter with `velocity` measures.
     ///
-    /// It is gamma nu - u_r p_r - gamma v p_ph. Where matter and light both move inwards, or both outwards, the first
-    /// two are close to each other near the horizon, and (with nu^2 = p_r^2 + p_across^2)
+    /// By definition that is gamma nu - u_r p_r - gamma v p_ph. Where matter and light both move inwards, or both
+    /// outwards, the first two terms are close to each other near the horizon, and (with nu^2 = p_r^2 + p_across^2)
     ///
     /// ```text
     /// gamma nu - u_r p_r = ((1 + gamma^2 v^2) nu^2 + u_r^2 p_across^2) / (gamma nu + u_r p_r)

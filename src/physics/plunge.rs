@@ -44,9 +44,9 @@ impl Plunge {
     /// The frequency that the matter at 1/r = `u`, inside the ISCO, measures of light with the constants `c` that
     /// crosses the plane there with u' = `du` (`geodesic::State`), in the units of `c.energy`.
     ///
-    /// It is -p . u of both four-velocities. In the orthonormal frame of Carter 1968, whose time axis is along
-    /// (r^2 + a^2) d/dt + a d/dph, with W = E - a (L - a E) u^2 of each, D = Delta / r^2, p^r = u' of the light (rays
-    /// are traced backward) and B = Q + (L - a E)^2:
+    /// By definition that is -p . u of both four-velocities. In the orthonormal frame of Carter 1968, whose time axis
+    /// is along (r^2 + a^2) d/dt + a d/dph, with W = E - a (L - a E) u^2 of each, D = Delta / r^2, p^r = u' of the
+    /// light (rays are traced backward) and B = Q + (L - a E)^2:
     ///
     /// ```text
     /// nu = (W_m W + |u^r| u') / D - x (L - a E) u^2
@@ -73,7 +73,7 @@ impl Plunge {
 /// The motion of matter in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matter {
-    /// It moves towards -ph.
+    /// Whether the disk's matter moves towards -ph.
     pub retrograde: bool,
     pub isco: f64,
     /// Its motion inside the ISCO; `None`: it is taken to be on the circular geodesic, as far as there are any.

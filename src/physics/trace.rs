@@ -113,7 +113,7 @@ pub struct Part<'a> {
     /// Tau from `from` to the part's begin and end.
     begin: f64,
     end: f64,
-    /// It is the last part of a captured ray, from where its steps end to the horizon.
+    /// Whether this is the last part of a captured ray, from where its steps end to the horizon.
     pub to_horizon: bool,
     settings: &'a Settings,
 }

@@ -121,7 +121,7 @@ impl Renderer {
             let took = match rendered {
                 Ok(stats) if stats.gpu_ns > 0 => stats.gpu_ns as f64,
                 Ok(_) => spent.as_nanos() as f64,
-                // It was broken off: the whole takes as long as the part lets expect.
+                // The frame was broken off: the whole is taken to last as long as the part lets expect.
                 Err(error) if error.kind == ErrorKind::Cancelled => spent.as_nanos() as f64 / done.max(LEAST_DONE),
                 Err(error) => return Err(error),
             };
@@ -153,7 +153,7 @@ mod tests {
         MatterChoice::WithinNs { pixels: 640.0 * 360.0, ns }
     }
 
-    /// The same measurement serves every goal, until the quality is another; frames for it are not counted.
+    /// One measurement serves every goal, until the quality is another; frames for it are not counted.
     #[test]
     fn depth_is_taken_where_it_fits() {
         let mut renderer = on_cpu();

@@ -85,7 +85,7 @@ pub struct Scene {
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
-    /// The same on the tracer's device, in its place.
+    /// A picture on the tracer's device that takes the place of `sky_map`.
     pub sky_picture: Option<SkyPicture>,
     pub film: Film,
     pub effects: Effects,

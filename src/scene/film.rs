@@ -15,7 +15,7 @@ pub enum ToneMap {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ColourMap {
-    /// Those of the light.
+    /// The light's own colours.
     None = 0,
     /// The map afmhot, for its luminance.
     Afmhot = 1,

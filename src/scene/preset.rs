@@ -13,11 +13,11 @@ use glam::{DQuat, DVec3};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Preset {
-    /// As a film would show it: a turbulent golden disk, glare.
+    /// The hole of a film: a turbulent golden disk, glare.
     Cinematic = 0,
-    /// As a physicist expects it: a smooth disk, no glare, no curve.
+    /// The hole that a physicist expects: a smooth disk, no glare, no curve.
     Physical = 1,
-    /// As the Event Horizon Telescope shows it: a ring, blurred, in one colour map.
+    /// The hole of the Event Horizon Telescope's pictures: a ring, blurred, in one colour map.
     Observatory = 2,
     /// For lessons: a grid on the sky, colours by frequency shift alone.
     Teaching = 3,
@@ -84,8 +84,8 @@ impl Preset {
         scene.sky = Sky { flags, stars_brightness: 1.0, map_brightness: 1.0, ..scene.sky };
     }
 
-    /// The same, but for the volumes, which become those of the look: with `Deep` one in place of the thin disk, else
-    /// none. Returns `Thin` for a look that has none with depth.
+    /// Applies the look with its volumes: with `Deep` one in place of the thin disk, else none. Returns `Thin` for a
+    /// look that has none with depth.
     pub fn apply_with(self, matter: PresetMatter, scene: &mut Scene) -> PresetMatter {
         self.apply(scene);
         scene.volumes.clear();
@@ -111,8 +111,8 @@ impl Preset {
             Self::Physical => {
                 Some(Volume { temperature: 9000.0, temperature_slope: 0.75, brightness: 7.0, ..Volume::plain() })
             }
-            // As models of hot accretion about Sgr A* and M87* have it (Yuan and Narayan 2014, ARA&A 52, 529): thick,
-            // transparent at 230 GHz, slower than Kepler's orbits and falling in.
+            // Models of hot accretion about Sgr A* and M87* (Yuan and Narayan 2014, ARA&A 52, 529): thick, transparent
+            // at 230 GHz, slower than Kepler's orbits and falling in.
             Self::Observatory => Some(Volume {
                 power_law: true,
                 shape: Shape::Torus,
@@ -324,7 +324,7 @@ mod tests {
         let own = scene.volumes.clone();
         Preset::Physical.apply(&mut scene);
         assert_eq!(scene.volumes, own);
-        // The same values, set by the host, are the host's.
+        // A volume that the host sets is the host's, even with the values of a look's.
         let mut scene = odd();
         scene.volumes.push(Preset::Cinematic.volume().expect("a volume"));
         Preset::Cinematic.apply(&mut scene);

@@ -29,9 +29,10 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum VolumeResolution {
-    /// Those of all pixels.
+    /// Matter is summed along the rays of all pixels.
     Full = 0,
-    /// One of each block of 2 x 2 pixels, and those of pixels that blocks do not tell (`emit::half`).
+    /// Matter is summed along one ray of each block of 2 x 2 pixels, and along those of pixels that blocks do not tell
+    /// (`emit::half`).
     Half = 1,
 }
 

@@ -50,7 +50,7 @@ impl Scene {
         self.pixel_settings_of(&self.emitters())
     }
 
-    /// The same for those who have [`Self::emitters`] at hand, which take a while to make.
+    /// [`Self::pixel_settings`] for callers that have [`Self::emitters`] at hand, which take a while to make.
     pub fn pixel_settings_of(&self, emitters: &Emitters) -> Settings {
         let mut settings = self.quality.ray_settings(self.hole.spin);
         if self.quality.method == Method::Auto {
@@ -76,7 +76,7 @@ impl Scene {
         self.sky_map.as_ref().filter(|_| self.asks_for_map())
     }
 
-    /// The same on the tracer's device.
+    /// The picture on the tracer's device, where it is to be seen.
     pub fn shown_picture(&self) -> Option<&super::SkyPicture> {
         self.sky_picture.as_ref().filter(|_| self.asks_for_map())
     }
@@ -190,7 +190,7 @@ impl Scene {
             fate: match traced.fate {
                 trace::Fate::Captured => Fate::Captured,
                 trace::Fate::Escaped => Fate::Escaped,
-                // Nothing is opaque for a host's rays.
+                // A host's rays see nothing as opaque, so none is hidden.
                 trace::Fate::Unresolved | trace::Fate::Hidden => Fate::Unresolved,
             },
             sky_direction: self.hole.scene_to_chart().transpose() * traced.direction,

@@ -374,7 +374,7 @@ mod tests {
                     map.light(d * cos + axis * sin, DVec3::ZERO, DVec3::ZERO)[0]
                 });
                 let wanted = dense.sum::<f64>() / 4000.0;
-                // As the sample's cell may be split between its two changes.
+                // The patch, given by another pair of changes: a sample's cell may be split between the two in any way.
                 let (sin, cos) = (6.3 * share()).sin_cos();
                 let found = map.light(d, dx * cos - dy * sin, dx * sin + dy * cos)[0];
                 worst = worst.max((found - wanted).abs() / (wanted + 0.05));

@@ -190,7 +190,7 @@ fn brightest() -> f64 {
 
 /// V magnitudes of the dust that the picture does not have.
 fn extinction(galactic: DVec3) -> f64 {
-    // Nothing is left of it from 2 heights on.
+    // The layer ends at 2 heights.
     let layer = ((-(galactic.z / DUST_HEIGHT).powi(2)).exp() - 0.02).max(0.0);
     if layer == 0.0 {
         return 0.0;

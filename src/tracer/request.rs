@@ -36,7 +36,7 @@ impl FrameRequest {
 /// Takes a finished tile: packed pixels, rows `bytes_per_row` apart. Runs on a thread of the tracer's, if that has one.
 pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + Send + 'a;
 
-/// The same for one of several outputs, which its index tells.
+/// Takes a finished tile of one of several outputs, which its index tells; else as [`TileSink`].
 pub type OutputSink<'a> = dyn FnMut(usize, Tile, &[u8], usize) -> Result<()> + Send + 'a;
 
 /// Hears how much of the frame is done, 0 .. 1; false cancels. Runs on the thread that asked for the frame.

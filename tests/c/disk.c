@@ -49,7 +49,7 @@ int fsync(int fd) {
 }
 
 int close(int fd) {
-    /* It is closed whatever close says. */
+    /* The descriptor is closed whatever close returns. */
     const int ours = is_ours(fd), closed = (int)syscall(SYS_close, fd);
     return ours && fails(CLOSE) ? -1 : closed;
 }

@@ -200,7 +200,7 @@ static Outcome compare(const unsigned char *part, const unsigned char *whole, si
     return outcome;
 }
 
-/* Nothing is written after the destroy call, however far the job was. */
+/* No pixel is written after the destroy call, however far the job was. */
 static void destroy_while_running(BhrContext *context, int small) {
     static const double parts[] = {0.0, 1e-6, 0.01};
     for (size_t i = 0; i < COUNT_OF(parts) - (small ? 1 : 0); i++) {

@@ -26,8 +26,8 @@ extern unsigned char expected[FLIGHT][BYTES], got[FLIGHT][BYTES];
 BhrImage frame_of(unsigned char *pixels);
 BhrJob  *submit(BhrContext *context, const BhrImage *target); /* ends the program when there is no job */
 void     set_quality(BhrContext *context, BhrMethod method, uint32_t samples);
-/* It shows light, as other views take one sample a pixel, and no region. Afterwards the context's quality is the
- * default. */
+/* Submits a job that takes long. The scene shows light, as other views take one sample a pixel, and no region.
+ * Afterwards the context's quality is the default. */
 BhrJob  *submit_slow(BhrContext *context);
 /* Waits until some, but not all, of a job is done. */
 double   wait_for_a_part(BhrJob *job, double part);

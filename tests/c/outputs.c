@@ -97,7 +97,7 @@ static void every_kind(BhrContext *context) {
           (unsigned)sights, (unsigned)captures);
 }
 
-/* As a job, into rows with gaps from the bottom up, and of a part of the frame. */
+/* Outputs by a job, into rows with gaps from the bottom up, and of a part of the frame. */
 static void ways(BhrContext *context) {
     static float expected[PIXELS * 4], gaps[(WIDTH + 3) * HEIGHT * 4];
     fresh();

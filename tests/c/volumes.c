@@ -271,7 +271,7 @@ static void arrays(Watch *watch, BhrContext *context) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size",
                       bhr_set_hot_spots(context, &wrong_spot, spot, 1));
     }
-    /* As many as there may be come back in their order; no more are written than there is room for. */
+    /* The most that there may be come back in their order; no more are written than there is room for. */
     CHECK_OK(bhr_set_volumes(context, volumes, one, BHR_MAX_VOLUMES));
     CHECK_OK(bhr_set_hot_spots(context, spots, spot, BHR_MAX_HOT_SPOTS));
     BhrVolume  read[BHR_MAX_VOLUMES];
@@ -452,7 +452,7 @@ int main(int argc, char **argv) {
     rays(&watch, context);
     views(&watch, context);
     jobs(&watch, context);
-    /* The same beside volumes that are set. */
+    /* Once more, beside volumes that are set. */
     const BhrVolume  volume = a_volume();
     const BhrHotSpot spot = a_spot();
     CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));

@@ -185,7 +185,7 @@ static void frames(const std::string &folder) {
     const bhr::FrameStats stats = context.frame_stats().value();
     EXPECT(stats.frame_index == 1 && stats.rays == WIDTH * HEIGHT && stats.cpu_time() > std::chrono::nanoseconds(0));
 
-    // The same pixels by C, through the handle.
+    // C gives the same pixels, through the handle.
     std::vector<std::uint8_t> pixels(WIDTH * HEIGHT * 4);
     bhr::Image image(pixels, WIDTH, HEIGHT);
     EXPECT(image.format == bhr::Format::rgba8_srgb && image.byte_size == pixels.size());

@@ -62,7 +62,7 @@ pub fn gpu() -> Lent {
     lent
 }
 
-/// The same, never used before nor after: for what a renderer holds, or for how several compare.
+/// A GPU renderer, never used before nor after: for what a renderer holds, or for how several compare.
 pub fn new_gpu() -> Lent {
     let renderer = plain(RendererOptions::default());
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");

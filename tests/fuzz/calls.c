@@ -360,7 +360,7 @@ static void output_call(BhrContext *context, size_t i) {
         outputs[k].index = outputs[k].kind == BHR_OUTPUT_VIEW ? byte() % 9u : mostly(0, byte());
         outputs[k].image = byte() < 250 ? &images[k] : NULL;
         if (byte() < 220) {
-            /* As hosts have them: of one size, in the kind's format, if that fits into a block. */
+            /* Images such as hosts have: of one size, in the kind's format, if that fits into a block. */
             const int single = outputs[k].kind == BHR_OUTPUT_DEPTH || outputs[k].kind == BHR_OUTPUT_TRANSMISSION ||
                                outputs[k].kind == BHR_OUTPUT_VIEW;
             images[k].width = images[0].width;

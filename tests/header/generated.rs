@@ -39,7 +39,7 @@ const SECTIONS: [(&str, &str); 28] = [
     ("stats", "numbers about the last finished frame"),
 ];
 
-/// The same of include/bhr_interop.h.
+/// The sections of include/bhr_interop.h: the file of src/capi that each is made from, and its title.
 const INTEROP_SECTIONS: [(&str, &str); 7] = [
     ("interop_info", "what can be shared"),
     ("interop_target", "targets"),
@@ -107,7 +107,7 @@ fn the_committed_header_is_the_generated_one() {
     is_up_to_date("include/bhr.h", &generate());
 }
 
-/// The same of include/bhr_interop.h.
+/// include/bhr_interop.h is up to date as well.
 #[test]
 fn the_committed_interop_header_is_the_generated_one() {
     is_up_to_date("include/bhr_interop.h", &generate_interop());

@@ -3,7 +3,7 @@
 //! with its comment, and the layout that the rules of C give structs on machines with pointers of 64 bits. The test
 //! in tests/header/json.rs compares those with what a C compiler says.
 //!
-//! It reads the header rather than cbindgen's own model, which is private for the most part: the header is what hosts
+//! The header is read rather than cbindgen's own model, which is private for the most part: the header is what hosts
 //! get, and each of its declarations has one of six forms. Anything else stops it with a panic.
 
 use serde_json::{Map, Value, json};

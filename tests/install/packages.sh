@@ -69,7 +69,7 @@ tarball() {
     symbols && by_pkg_config && by_find_package
 }
 
-# The same sources give the same bytes.
+# Sources that have not changed give the same bytes.
 tarball_again() {
     with_tools "$root/packaging/tarball" "$scratch/tarball-again" &&
         cmp "$scratch"/tarball/*.tar.gz "$scratch"/tarball-again/*.tar.gz

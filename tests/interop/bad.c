@@ -249,7 +249,7 @@ static void bad_handles(const BhrInteropInfo *info) {
     frame_works(target);
     bhr_target_destroy(target);
     bhr_target_destroy(source);
-    /* Nothing is exported that was not made for it. */
+    /* Targets that were not made for export are not exported. */
     options.handle_type = 0;
     CHECK_OK(bhr_target_create(context, &options, &source));
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "handle_type", bhr_target_export(source, &exported));

@@ -74,7 +74,7 @@ static BhrContext *adopt(void) {
     return context;
 }
 
-/* The same frame by a context of bhr's own device. */
+/* Compares with a frame by a context of bhr's own device. */
 static void expect(BhrContext *own, BhrFormat format, double time) {
     BhrImage image;
     CHECK_OK(bhr_image_init(&image, sizeof image));
@@ -278,7 +278,7 @@ int main(int argc, char **argv) {
     CHECK(pthread_create(&other, NULL, submit_always, NULL) == 0, "no thread");
     BhrContext *context = adopt();
     CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "host", bhr_context_recover(context));
-    /* The same scene on both. */
+    /* Both contexts have one scene. */
     check_set_sky(context);
     BhrCamera camera = {.struct_size = sizeof camera};
     BhrDisk   disk = {.struct_size = sizeof disk};

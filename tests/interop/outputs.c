@@ -50,7 +50,7 @@ static BhrOutput output_of(size_t at, BhrTarget *target) {
     return output;
 }
 
-/* The same into the host's memory. */
+/* An output into the host's memory. */
 static BhrOutput imaged(size_t at, BhrImage *image, void *pixels, uint32_t flags) {
     BhrOutput output = output_of(at, NULL);
     *image = image_of(kinds[at].format, WIDTH, HEIGHT, pixels, MOST);
@@ -306,7 +306,7 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
         apart = vk_apart(BHR_FORMAT_RGBA16F, seen, expected_light, WIDTH * HEIGHT * 8);
         CHECK(apart <= vk_most_apart(context, BHR_TARGET_IMAGE, BHR_FORMAT_RGBA16F), "into a target: %g apart", apart);
     }
-    /* It is set, and goes: frames say so until another is set. */
+    /* The occluder's target is destroyed while it is set: frames say so until another is set. */
     fill(&picture, distances, step);
     BhrOutput output = output_of(0, target);
     CHECK_FAILS(BAD, "occluder", bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL));
@@ -417,7 +417,7 @@ static void many(void) {
     }
     CHECK_OK(bhr_semaphore_wait(done, 60, UINT64_MAX));
     CHECK_OK(bhr_frame_stats(context, &last));
-    /* As many staging buffers, of a few bytes each, as frames are on their way. */
+    /* Each frame on its way may have a staging buffer, of a few bytes. */
     CHECK(last.device_bytes <= first.device_bytes + 8192, "device memory: %llu bytes early, %llu late",
           (unsigned long long)first.device_bytes, (unsigned long long)last.device_bytes);
     for (size_t at = 0; at < 3; at++)

@@ -25,7 +25,7 @@ fn sky(d: DVec3) -> [f64; 3] {
     ]
 }
 
-/// It as a map of bhr's (bhr.h, bhr_set_sky_map).
+/// `sky` as a map of bhr's (bhr.h, bhr_set_sky_map).
 fn map() -> SkyMap {
     let [width, height] = [1024, 512];
     let direction = |x: u32, y: u32| {

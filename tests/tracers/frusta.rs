@@ -56,7 +56,7 @@ fn a_symmetric_frustum_is_a_perspective_picture_to_the_byte() {
             let wide = tan * f64::from(SIZE[0]) / f64::from(SIZE[1]);
             renderer.scene.camera.projection = Projection::Frustum;
             renderer.scene.camera.frustum = Frustum { left: -wide, right: wide, down: -tan, up: tan };
-            // It is ignored.
+            // A frustum ignores the field of view.
             renderer.scene.camera.fov_y = 3.0;
             assert!(shown(&mut renderer, SIZE, None) == perspective, "{tracer}, {way:?}: other bytes");
             assert!(tiled(&mut renderer, PixelFormat::Rgba8Srgb, SIZE) == perspective, "{tracer}, {way:?}: tiles");

@@ -138,7 +138,7 @@ fn taken<const N: usize>(sights: [Sight; N], everyday: &[usize]) -> Vec<(Sight, 
 
 /// Shares of pixels that may be off by more than 5, 20 and 50 %.
 const MOST_OFF: [f64; 3] = [1e-2, 1.5e-3, 2e-4];
-/// The same in everyday tests: the most that the library has been brought to so far.
+/// The shares in everyday tests: the most that the library has been brought to so far.
 const MOST_OFF_EVERYDAY: [f64; 3] = [2e-2, 2.5e-3, 5e-4];
 
 fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {

@@ -178,7 +178,7 @@ fn the_orientation_turns_the_map_as_documented() {
             let share = lit / (33.0 * 33.0);
             assert!((share - 0.16 * 0.866).abs() < 0.01, "{tracer} {turn}: {share}");
         }
-        // As seen from inside with north up, right ascension grows to the left, as in the picture.
+        // Seen from inside with north up, right ascension grows to the left, as in the picture.
         renderer.scene.sky.orientation = DQuat::IDENTITY;
         far_from_everything(&mut renderer, towards(88.0, 30.0), 10.0);
         let pixels = light(&mut renderer, [33, 33]);

@@ -58,7 +58,7 @@ fn structure_keeps_the_mean() {
     }
 }
 
-/// It moves from frame to frame, evenly: no frame differs from the one before by much more than others do.
+/// Structure moves from frame to frame, evenly: no frame differs from the one before by much more than others do.
 #[test]
 fn structure_moves_and_nothing_pops() {
     let mut renderer = cpu();

@@ -270,7 +270,7 @@ fn gl() -> Option<Vec<RankedAdapter>> {
     search().inspect_err(|error| log::info!("adapters of GL passed over: {error}")).ok()
 }
 
-/// Those of [`gl`] that are no software.
+/// The adapters of [`gl`] that are hardware.
 fn gl_hardware() -> Vec<RankedAdapter> {
     if NO_GL_HARDWARE.load(Ordering::Relaxed) {
         return Vec::new();

@@ -127,7 +127,7 @@ mod thread_end {
                 });
                 thread.join().unwrap();
                 assert_eq!(SEEN.load(Ordering::Relaxed), seen);
-                // It is released again.
+                // The lock is free again: another thread gets it.
                 std::thread::spawn(|| drop(super::super::lock())).join().unwrap();
             }
         }

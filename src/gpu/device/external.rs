@@ -23,7 +23,7 @@ pub struct Sharing {
     pub export_buffers: u32,
     pub import_images: u32,
     pub import_buffers: u32,
-    /// Those of timelines, and those of binary semaphores.
+    /// The handles of timelines, and those of binary semaphores.
     pub semaphores: [u32; 2],
 }
 

@@ -51,7 +51,7 @@ mod egl {
     impl Drop for ContextGuard {
         fn drop(&mut self) {
             drop(self.end.take());
-            // It ends under the driver lock.
+            // The guard's thread ends under the driver lock: waiting for it with the lock held would never end.
             if let Some(thread) = self.thread.take().filter(|_| !driver_lock::is_held()) {
                 let _ = thread.join();
             }

@@ -64,7 +64,7 @@ enum Report {
     Progress(f64),
     /// Its work is done, and it no longer uses what it was lent.
     Done,
-    /// It stands still for good, and will never again use what it was lent; why.
+    /// The thread stands still for good, and will never again use what it was lent; why.
     Parked(String),
 }
 
@@ -121,7 +121,7 @@ impl GlThread {
         self.run_with_progress(|_| work(), &mut |_| true)
     }
 
-    /// The same; `progress` runs on this thread.
+    /// Runs `work` on the thread and waits for it, while `progress` runs on the caller's. Errors: as [`Self::run`].
     pub fn run_with_progress<T: Send>(
         &self,
         work: impl FnOnce(&mut Progress<'_>) -> T + Send,
@@ -227,7 +227,7 @@ impl Drop for GlThread {
     fn drop(&mut self) {
         let parked = self.channel.get_mut().take().is_none();
         let Some(handle) = self.handle.take() else { return };
-        // It ends when it has nothing left to do.
+        // The thread ends by itself when it has nothing left to do.
         if !parked && handle.thread().id() != thread::current().id() {
             let _ = handle.join();
         }

@@ -20,7 +20,7 @@ const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 pub struct Handover<'a> {
     /// The targets of a frame that this submission is the first to write.
     pub(in crate::gpu) takes: &'a [Arc<GpuTarget>],
-    /// Those that it is the last to write.
+    /// Targets that no later submission of the frame writes.
     pub(in crate::gpu) gives: &'a [Arc<GpuTarget>],
     /// Targets that are read before anything else.
     pub(in crate::gpu) reads: &'a [&'a TargetRead],

@@ -22,7 +22,8 @@ use std::time::{Duration, Instant};
 const LONGEST: Duration = Duration::from_secs(10);
 /// How long threads are held up: handlers and destructors take less, unless they wait for something.
 const PAUSE: Duration = Duration::from_secs(2);
-/// The same after something was to be destroyed, counted from the last one: what the host lent it may be gone.
+/// How long threads are held up after something was to be destroyed, counted from the last such thing: what the host
+/// lent it may be gone.
 const KEPT_PAUSE: Duration = Duration::from_secs(10);
 
 /// The number of this library's threads within a driver, and [`CLOSED`].
@@ -59,7 +60,7 @@ pub fn own_thread() {
 /// While it lives, its thread may call a driver.
 pub struct Inside {
     counts: bool,
-    /// It belongs to its thread.
+    /// Keeps the value on its thread, whose depth it counts.
     _thread: std::marker::PhantomData<*const ()>,
 }
 

@@ -55,7 +55,7 @@ impl Parsed {
 fn remove_dead_code(module: &mut Module) {
     let mut constant_functions = ConstantFunctions::new();
     let mut functions = std::mem::take(&mut module.functions);
-    // Those that are called come before those that call them.
+    // Naga's functions stand in an order in which callees come before their callers.
     for (handle, function) in functions.iter_mut() {
         if let Some(constant_result) = Pruner::prune(module, function, &constant_functions) {
             constant_functions.insert(handle, constant_result);
@@ -145,7 +145,7 @@ impl<'a> Pruner<'a> {
                 Statement::Block(inner) => inner.span_into_iter().for_each(|(inner, span)| kept.push(inner, span)),
                 other => kept.push(other, span),
             }
-            // Nothing behind a statement that leaves the block runs.
+            // Statements behind one that leaves the block never run.
             if kept.last().is_some_and(ends_block) {
                 break;
             }

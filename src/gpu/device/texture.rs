@@ -55,8 +55,8 @@ impl Device {
         self.table_of_levels(label, format, size, 1)
     }
 
-    /// The same with `levels`, of which each has half the columns and rows of the one before, rounded down, but one at
-    /// least ([`Device::write_part`]). Errors: as [`Device::scoped`].
+    /// A texture that the host fills, with `levels`, each of half the columns and rows of the one before, rounded down,
+    /// but at least one ([`Device::write_part`]). Errors: as [`Device::scoped`].
     pub fn table_of_levels(
         &self,
         label: &str,

@@ -29,7 +29,7 @@ const OF_INSTANCE: [&CStr; 8] = [
     khr::win32_surface::NAME,
     khr::get_surface_capabilities2::NAME,
 ];
-/// Those that must be there.
+/// The number of extensions, the first of `OF_INSTANCE`, that must be there.
 const NEEDED_OF_INSTANCE: usize = 2;
 
 /// Functions that are called before wgpu has looked at anything.

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 /// driver may need more.
 const HANG_AFTER: Duration = Duration::from_secs(60);
 
-/// The same in milliseconds, which tests make shorter.
+/// `HANG_AFTER` in milliseconds, which tests make shorter.
 static HANGS_AFTER: AtomicU64 = AtomicU64::new(HANG_AFTER.as_millis() as u64);
 
 pub(super) fn hangs_after() -> Duration {
@@ -431,7 +431,7 @@ impl Device {
     /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver.
     pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
         let first = || !self.compiled.load(Ordering::Acquire);
-        // Those who waited for the first one make theirs side by side.
+        // Threads that waited for the first pipeline make theirs side by side.
         let driver = first().then(driver_lock::lock).filter(|_| first());
         let made = compile();
         self.compiled.store(true, Ordering::Release);

@@ -55,7 +55,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         sky_redshift: if fate == Fate::Escaped { redshift } else { f64::NAN },
         energy,
         angular_momentum: momentum,
-        // It does not leave the GPU.
+        // The polar momentum does not leave the GPU.
         polar_momentum: 0.0,
         steps: steps as u32,
         plane_u,

@@ -28,8 +28,8 @@ pub(in crate::gpu) struct PipelineCache {
 #[derive(Default)]
 struct State {
     entries: HashMap<KernelKey, CacheEntry>,
-    /// Those of `entries` that are there: first those that no frame has asked for yet, the one made last being the last
-    /// of them; then the others, the one used last being the last.
+    /// The keys of `entries` whose pipelines are there: first those that no frame has asked for yet, in the order in
+    /// which they were made; then the others, in the order in which they were last used.
     used: Vec<KernelKey>,
     /// How many no frame has asked for yet.
     ahead: usize,
@@ -81,7 +81,7 @@ impl PipelineCache {
         self.get_for(device, key, false)
     }
 
-    /// The same for frames that may come: takes the place of no pipeline that a frame has used.
+    /// The kernel's pipeline for frames that may come: takes the place of no pipeline that a frame has used.
     pub(in crate::gpu) fn get_ahead(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
         self.get_for(device, key, true)
     }

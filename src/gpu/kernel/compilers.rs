@@ -143,7 +143,7 @@ impl Compilers {
         missing: Vec<KernelKey>,
     ) -> CompileBatch {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
-        // Those that take longest, which come last, are begun first.
+        // Kernels that take longest come last in the list, and are begun first.
         let left = Arc::new(Mutex::new(missing.iter().rev().copied().collect::<VecDeque<_>>()));
         let scope = thread_scope::of_caller();
         let mut queue = self.queue.lock();
@@ -209,7 +209,7 @@ impl Compilers {
     pub fn settle(&self) {
         let started = std::mem::take(&mut self.queue.lock().started);
         for thread in started {
-            // It catches its panics itself.
+            // A compiling thread catches its panics itself.
             let _ = thread.join();
         }
     }

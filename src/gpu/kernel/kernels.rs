@@ -61,7 +61,7 @@ impl Kernels {
         self.cache.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
-    /// Those of `keys` whose pipelines are not there.
+    /// The kernels among `keys` whose pipelines are not there.
     pub fn missing(&self, keys: &[KernelKey]) -> Vec<KernelKey> {
         keys.iter().copied().filter(|key| !self.cache.has(*key)).collect()
     }

@@ -35,7 +35,7 @@ pub struct JoinedFragments<'a> {
     find: &'a dyn Fn(&str) -> Option<Text>,
     /// In the order in which they are joined.
     fragments: Vec<(String, Text)>,
-    /// Those whose imports are being joined, each imported by the one before it.
+    /// Fragments whose imports are being joined, each imported by the one before it.
     open: Vec<String>,
 }
 

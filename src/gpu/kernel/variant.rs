@@ -7,7 +7,7 @@ use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, RayOutput, ToneMap
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
-/// The same of those that write them row by row.
+/// Threads of a workgroup of the kernels that write pixels row by row.
 pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
@@ -101,7 +101,7 @@ pub struct FilmVariant {
     pub(in crate::gpu) false_colour: bool,
     /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
     pub(in crate::gpu) tone_map: Option<ToneMap>,
-    /// As `tone_map`.
+    /// `None`: any, which the kernel asks while it runs. `ColourMap::None` where it does not matter.
     pub(in crate::gpu) colour_map: Option<ColourMap>,
     pub(in crate::gpu) target: PixelTarget,
 }
@@ -123,7 +123,7 @@ pub enum PixelTarget {
     Image(StoredFormat),
     /// Into a buffer, packed, or the rows of a whole frame, each thread its pixel.
     Packed,
-    /// The same by workgroups, row by row: faster where the buffer is in the host's memory.
+    /// Into a buffer by workgroups, row by row: faster where the buffer is in the host's memory.
     Rows,
     /// Not pixels yet: exposed light, for bloom to spread.
     Light,
@@ -185,7 +185,7 @@ impl FilmVariant {
         Self { pixels: Some(pixels), false_colour: !shows_light, tone_map, colour_map, target }
     }
 
-    /// The same for every tone map and colour map, and, but in images, which have one kind of pixels, for every
+    /// The variant that serves every tone map and colour map, and, but in images, which have one kind of pixels, every
     /// format. Views other than light have no tone map.
     pub fn of_any(self) -> Self {
         let pixels = self.pixels.filter(|_| self.target.is_image());
@@ -248,7 +248,7 @@ pub enum OutputPlace {
     /// The rows of a buffer.
     Number,
     Numbers,
-    /// The same, all of which begin at multiples of 16 bytes.
+    /// The rows of a buffer, all of which begin at multiples of 16 bytes.
     AlignedNumbers,
     /// An image of R32F or RGBA32F.
     NumberImage,

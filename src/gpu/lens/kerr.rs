@@ -211,7 +211,7 @@ impl KerrResources {
         let needed = [rows[0], rows[0] + rows[1]];
         let layers = if contents.pattern { contents.orders } else { contents.orders.div_ceil(ORDERS_A_LAYER) };
         let serves = |m: &Self| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
-        // Those that go, go before others are made, unless they serve.
+        // Frees the old tables before making new ones, unless they are large enough.
         let mut resources = match goes.filter(serves) {
             Some(resources) => resources,
             None => Self::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?,

@@ -7,7 +7,7 @@ use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
 use wgpu::BufferUsages as Usage;
 
-/// It grows and stays.
+/// The list's buffer grows with tiles, and never shrinks.
 pub struct PixelList {
     label: &'static str,
     /// Bytes before the pixels.

@@ -110,7 +110,7 @@ impl SchwarzschildTables {
         }
         let uniform = SchwarzschildUniform::new(frame);
         let nodes = uniform.nodes[0].max(uniform.nodes[1]);
-        // Those that go, go before others are made, unless they serve.
+        // Frees the old tables before making new ones, unless they are large enough.
         let serves = |m: &SchwarzschildResources| m.nodes >= nodes && (m.delay || !delay);
         let resources = match self.kept.make_room(&key).filter(serves) {
             Some(resources) => resources,

@@ -106,7 +106,7 @@ pub fn group() -> Group {
     for (functions, inputs) in points {
         const POINT: &str =
             "enter_scene(); let p = camera_point(in1(1u), in1(2u)); out3(p.at); out3(p.dx); out3(p.dy);";
-        // As sincos.
+        // The bound is that of sincos.
         twins.push(twin(projection, functions, POINT, inputs, point, ROUNDING).with(&any));
     }
     twins.extend([

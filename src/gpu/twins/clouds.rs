@@ -217,7 +217,7 @@ pub fn group() -> Group {
                 o.near(seen.density, 1.0);
                 o.near(seen.heat, 1.0);
             },
-            // As filament_value, in the exponent.
+            // The error of filament_value, in the exponent.
             2e-2,
         ),
         twin(

@@ -3,7 +3,7 @@
 
 /// Why a function has no twin.
 pub enum Why {
-    /// It has no counterpart in Rust, or one that only places, packs, binds or counts.
+    /// The function has no counterpart in Rust, or one that only places, packs, binds or counts.
     Plumbing(#[allow(dead_code, reason = "the text is for whoever reads the list")] &'static str),
     /// A test compares what it does in another way: file, test, and what that is.
     Tested(&'static str, &'static str, #[allow(dead_code, reason = "as above")] &'static str),
@@ -153,7 +153,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("sky/source_parts", "source_row source_word", Plumbing("it finds a word")),
     ("emit/occluder_rows", "take_distances", Plumbing("it copies")),
     ("shade/packed_outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
-    // As src/gpu/kernel/wgsl.rs writes it.
+    // The text that src/gpu/kernel/wgsl.rs writes for a frame's own outputs.
     ("shade/outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
     ("emit/occluder", "set_occluder", OCCLUDER),

@@ -178,7 +178,7 @@ pub fn group() -> Group {
                 let (sin, cos) = i.x(0).sin_cos();
                 o.all([sin, cos], 1.0);
             },
-            // As it promises: 2e-7 for |x| < 1e3.
+            // Its comment promises 2e-7 for |x| < 1e3.
             2e-7,
         )
         .exactly(),
@@ -207,7 +207,7 @@ pub fn group() -> Group {
                 i.signed(1e-6, 1e6);
             },
             |i, o| o.near(i.x(0).atan2(i.x(1)), 1.0),
-            // As it promises: 3e-7, and pi rounded.
+            // Its comment promises 3e-7, and pi is rounded besides.
             4e-7,
         )
         .exactly(),

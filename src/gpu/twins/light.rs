@@ -200,7 +200,7 @@ pub fn group() -> Group {
             "enter_scene(); out1(temperature_profile(in1(1u)));",
             disk_place,
             |i, o| o.near(profiles()[i.word(0) as usize].at(1.0 / i.x(1)), 1.0),
-            // It rises like the root of the distance from the ISCO, which the uniform has rounded.
+            // The profile rises like the root of the distance from the ISCO, which the uniform has rounded.
             1e-4,
         ),
         twin(
@@ -212,7 +212,7 @@ pub fn group() -> Group {
                 let thin = view(i).scene.emitters().disk.expect("a disk");
                 o.near(thin.profile(&profiles()[i.word(0) as usize], i.x(1)), 1.0);
             },
-            // As temperature_profile.
+            // The bound is that of temperature_profile.
             1e-4,
         ),
         twin(
@@ -263,7 +263,7 @@ pub fn group() -> Group {
                 let gain = i.x(3).powi(4) / i.x(2).powi(4) * disk.brightness;
                 o.all(light, gain * 1e-3);
             },
-            // As the profile and its light.
+            // The errors of the profile and of its light add up.
             2e-4,
         ),
         twin(

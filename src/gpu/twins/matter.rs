@@ -366,7 +366,8 @@ fn shapes() -> Vec<super::Twin> {
             shape,
             "cells_of",
             with_shape!(
-                "m.shape = word(12u); m.motion = word(13u); m.size = in1(1u); out1(cells_of(in2(7u), in2(9u), in1(11u), m));"
+                "m.shape = word(12u); m.motion = word(13u); m.size = in1(1u);
+                 out1(cells_of(in2(7u), in2(9u), in1(11u), m));"
             ),
             |i| {
                 push_shape(i);
@@ -503,8 +504,8 @@ pub fn group() -> Group {
         twin(
             "emit/volumes",
             "clip clip_between",
-            "var m: Matter; m.u_outer = in1(0u); m.u_inner = in1(1u); m.most_cosine = in1(2u); let s = clip(m, in2(3u), in2(5u));
-             out2(select(vec2<f32>(0.0), s, s.x < s.y));",
+            "var m: Matter; m.u_outer = in1(0u); m.u_inner = in1(1u); m.most_cosine = in1(2u);
+             let s = clip(m, in2(3u), in2(5u)); out2(select(vec2<f32>(0.0), s, s.x < s.y));",
             |i| {
                 let outer = i.log(0.01, 0.1);
                 let ratio = i.random.log(1.5, 10.0);

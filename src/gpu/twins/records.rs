@@ -92,8 +92,7 @@ pub fn group() -> Group {
                 i.signed(1e-4, 1e4);
             },
             |i, o| {
-                // As `SchwarzschildLookup::curve_slope` has d ln |t| / d psi: (1 + t^2) / (2 t) up to 90 degrees, and 1
-                // beyond.
+                // d ln |t| / d psi of `SchwarzschildLookup::curve_slope`: (1 + t^2) / (2 t) up to 90 degrees, 1 beyond.
                 let slope = |t: f64| (1.0 + t * t) / (2.0 * t);
                 o.put(slope(i.x(0).abs()) / slope(i.x(0).abs().min(1.0)));
             },

@@ -118,7 +118,7 @@ fn made(kind: Kind, number: u32) -> View {
     disk.reference = [DiskReference::Hottest, DiskReference::Median][number as usize / 2 % 2];
     disk.edge_softness = if number % 4 == 1 { random.even(0.05, 0.9) } else { 0.0 };
     disk.emission_law = [EmissionLaw::Isotropic, EmissionLaw::LimbDarkened][number as usize / 3 % 2];
-    // As far in as f32 knows the distance from the horizon well.
+    // Matter plunges as far in as f32 knows the distance from the horizon well.
     disk.plunges = number % 6 == 4;
     disk.inner_radius = if disk.plunges { 1.3 * horizon_outer(scene.hole.spin) } else { 0.0 };
     disk.seed = random.bits();

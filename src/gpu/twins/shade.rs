@@ -210,7 +210,7 @@ pub fn group() -> Group {
             "let record = enter_record(); out4(shade_record(vec2<u32>(0u), record));",
             push_record,
             light_of_record,
-            // As star_light and under_grid.
+            // The errors of star_light and of under_grid add up.
             3e-3,
         )
         .with(&any)
@@ -225,7 +225,7 @@ pub fn group() -> Group {
                 i.words[3] = Fate::Captured as u32;
             },
             light_of_record,
-            // As turbulent_brightness.
+            // The bound is that of turbulent_brightness.
             4e-3,
         )
         .with(&any)

@@ -125,7 +125,7 @@ impl Swapchain {
         self.configured == Some(mode)
     }
 
-    /// It has to be configured anew.
+    /// Notes that the swapchain has to be configured anew, because the window has changed.
     pub fn window_changed(&mut self) {
         self.configured = None;
     }

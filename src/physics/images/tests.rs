@@ -108,7 +108,7 @@ fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
     [lost, missed]
 }
 
-/// As many in `tests/run all`, else a tenth.
+/// The number of random cases: `all` in `tests/run all`, else a tenth.
 fn count(all: usize) -> usize {
     if std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1") { all } else { all / 10 }
 }

@@ -220,7 +220,7 @@ impl CriticalCurve {
         self.k * cos + self.radial(chi) * sin
     }
 
-    /// The same direction with psi given by `t` = tan(psi / 2).
+    /// The look direction at (psi, chi), where `t` = tan(psi / 2).
     fn direction_by_tangent(&self, t: f64, chi: f64) -> DVec3 {
         let inverse = 1.0 / (1.0 + t * t);
         self.k * ((1.0 - t * t) * inverse) + self.radial(chi) * (2.0 * t * inverse)

@@ -69,7 +69,7 @@ fn rings_have_the_colours_of_the_planckian_locus() {
                 let difference = difference(light[*k], locus);
                 assert!(difference < 0.2, "{tracer}: {} K: {:?}, dE {difference}", locus.0, light[*k]);
             }
-            // The same light after exposure, encoding, dither and rounding, decoded and averaged.
+            // The light after exposure, encoding, dither and rounding, decoded and averaged.
             let pixels = bytes(&mut renderer, PixelFormat::Rgba8Srgb, size, whole(size));
             let decoded: Vec<[f64; 3]> = ring
                 .iter()

@@ -161,7 +161,7 @@ fn plunging_matter_adds_light_inside_the_hottest_ring_only() {
             let spin = 0.5;
             renderer.scene.hole.spin = spin;
             renderer.scene.camera = camera(30.0, 30.0, 30.0);
-            // The same way to find rays.
+            // Rays are found in the same way with and without plunging matter, which no table serves.
             renderer.scene.quality.lens_tables = LensTables::Never;
             renderer.scene.quality.refines = false;
             let disk = Disk { reference, edge_softness: 0.3, turbulence: 0.8, ..Disk::plain() };

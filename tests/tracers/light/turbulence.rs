@@ -212,7 +212,7 @@ fn pattern_is_seen_at_its_retarded_time() {
     }
 }
 
-/// The same seed gives the same bytes, in a renderer of its own too; another one another pattern.
+/// One seed gives the same bytes, in a renderer of its own too; another one another pattern.
 #[test]
 fn seeds_repeat() {
     let mut renderer = face_on(false);

@@ -31,7 +31,7 @@ impl CopiedDescriptor {
         self.number
     }
 
-    /// It is the driver's now.
+    /// Leaves the descriptor to the driver, which closes it from now on.
     pub fn taken(self) {
         std::mem::forget(self);
     }

@@ -31,9 +31,9 @@ const MOST_RUNNING: usize = 64;
 /// The values that a timeline is to have.
 #[derive(Default)]
 struct Values {
-    /// Those of frames that are not submitted yet, as many as a context takes at most.
+    /// Values of frames that are not submitted yet, at most as many as a context has jobs.
     pending: BTreeSet<u64>,
-    /// Those that went to the queue, as far as they are not known to be reached.
+    /// Values that went to the queue and are not known to be reached.
     running: BTreeSet<u64>,
     /// The largest one that went to the queue.
     submitted: u64,

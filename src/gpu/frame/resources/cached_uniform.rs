@@ -17,7 +17,7 @@ impl CachedUniform {
         Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
     }
 
-    /// The same for kernels that have uniforms enough.
+    /// A uniform's bytes in a storage buffer, for kernels that have as many uniforms as devices allow.
     pub fn in_storage(device: &Device, label: &str, size: u64) -> Result<Self> {
         Ok(Self { buffer: device.buffer(label, size, Usage::STORAGE | Usage::COPY_DST)?, bytes: Vec::new() })
     }

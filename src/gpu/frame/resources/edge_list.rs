@@ -33,7 +33,7 @@ impl EdgeList {
         self.0.reset(encoder);
     }
 
-    /// As group 3 of the kernels that write and read it.
+    /// The list as group 3 of the kernels that write and read it.
     pub fn group(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindGroup> {
         device.bind(layout, &[self.0.resource()?])
     }

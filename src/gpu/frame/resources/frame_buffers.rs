@@ -46,7 +46,7 @@ pub struct FixedBuffers {
     /// Written for scenes with structure in matter with depth only.
     pub clouds: CachedUniform,
     pub film: CachedUniform,
-    /// The same for light that is exposed already.
+    /// Film settings for light that has already been exposed.
     pub film_of_exposed: CachedUniform,
     /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
     /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`, and one for outputs; `uniform_stride` apart.

@@ -49,7 +49,7 @@ pub enum Delivery {
     Host,
     /// Where kernels write them, into an image.
     Image,
-    /// The same, in the rows of a buffer.
+    /// Where kernels write them, into the rows of a buffer.
     Rows(FrameRows),
     /// Into a texture, by a copy.
     Copied(wgpu::Texture),

@@ -229,7 +229,7 @@ impl FrameBuffers {
         if let Some(handed) = &mut frame.handed {
             handed.submitted(writes, last);
         }
-        // It runs, and signals, whatever fails from here on.
+        // The submission runs, and signals, whatever fails from here on.
         frame.submitted += 1;
         if let Some(beside) = &mut frame.beside {
             beside.begun |= step.outputs;

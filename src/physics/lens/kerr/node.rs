@@ -36,7 +36,7 @@ impl<'a> NodeRay<'a> {
     fn follow(&mut self, c: &Constants, start: &State) {
         let settings = Settings { step: STEP, delay: self.wanted.pattern, ..Settings::exact(c.a) };
         let mut state = *start;
-        // As in `trace`, a start in the plane is no crossing.
+        // A start in the plane is no crossing, as in `trace`.
         let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
         let mut beyond = 0.0;
         for _ in 0..MAX_STEPS {
