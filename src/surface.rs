@@ -369,7 +369,7 @@ impl Presentation {
 
     fn find(window: &Window, tracing: Option<WindowTracer<'_>>, validation: bool) -> Result<Self> {
         let mut reasons = Vec::new();
-        let tried = tracing.as_ref().map(|tracing| tracing.adapter.info.clone());
+        let tried = tracing.as_ref().map(|tracing| tracing.adapter);
         if let Some(WindowTracer { adapter, device, tracer }) = tracing {
             match Swapchain::new(adapter, device, window) {
                 Ok(swapchain) => return Ok(Self::Direct(Screen::new(swapchain, window), tracer)),
@@ -378,7 +378,7 @@ impl Presentation {
             }
         }
         let others = gpu::adapters(Search::Native, validation).into_iter();
-        for adapter in others.filter(|adapter| tried.as_ref() != Some(&adapter.info)) {
+        for adapter in others.filter(|adapter| !tried.is_some_and(|tried| adapter.is_same(tried))) {
             let opened = adapter.check_presents(window).and_then(|()| Device::open(&adapter));
             match opened.and_then(|device| Swapchain::new(&adapter, Arc::new(device), window)) {
                 Ok(swapchain) => {

@@ -2,7 +2,8 @@
 /* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in
  * every present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's,
  * shows what bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate
- * and never hangs: not in a hidden window, not in one that is gone. Wrong handles and states have their status.
+ * and never hangs: not in a hidden window, not in one that is gone. Wrong handles and states have their status. A
+ * context that was made while the environment had no Wayland display serves windows of one that it got later.
  *
  *     wayland BACKEND direct|uploaded|memory
  *         environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY, COMPOSITOR (its process, which is stopped a
@@ -351,6 +352,32 @@ static void more_windows(BhrBackend backend) {
     check_connected("more windows");
 }
 
+/* Opens a context while the environment has no folder for the display's socket, as a host does that sets it later. */
+static BhrContext *open_early(BhrBackend backend) {
+    const char *folder = getenv("XDG_RUNTIME_DIR");
+    char        kept[512];
+    if (!CHECK(folder != NULL && strlen(folder) < sizeof kept, "no XDG_RUNTIME_DIR")) {
+        exit(check_end());
+    }
+    strcpy(kept, folder);
+    unsetenv("XDG_RUNTIME_DIR");
+    BhrContext *context = open_context(backend, NULL);
+    setenv("XDG_RUNTIME_DIR", kept, 1);
+    return context;
+}
+
+/* Its device makes no surfaces of Wayland: frames come from there to one that does, where there is a driver. */
+static void early(BhrContext *context, SDL_Window *window, const char *way) {
+    said[0] = '\0';
+    BhrSurface *surface = open_surface(context, window);
+    check_shows(context, surface, "a context from before the display");
+    const char *expected = strcmp(way, "memory") == 0 ? "as memory" : "are presented by";
+    CHECK(strstr(said, expected) != NULL, "not '%s'; the log: %s", expected, said);
+    bhr_surface_destroy(surface);
+    bhr_context_destroy(context);
+    said[0] = '\0';
+}
+
 /* The frames went the way that this run is meant to test. */
 static void check_way(const char *way) {
     const int presented = strstr(said, "are presented by") != NULL, memory = strstr(said, "as memory") != NULL;
@@ -366,11 +393,13 @@ int main(int argc, char **argv) {
     if (!CHECK(compositor > 1, "COMPOSITOR is no process")) {
         return check_end();
     }
+    BhrContext *before = open_early(backend);
     SDL_SetMainReady();
     if (!CHECK(SDL_Init(SDL_INIT_VIDEO) == 0, "SDL does not start: %s", SDL_GetError())) {
         return check_end();
     }
     SDL_Window *window = open_window();
+    early(before, window, way);
     BhrContext *context = open_context(backend, NULL);
     BhrSurface *surface = open_surface(context, window);
     present(context, surface, 20);

@@ -3,6 +3,7 @@
 
 use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
+use super::instance::{self, DriverAdapters};
 use super::{driver_lock, loader, process_end};
 use crate::error::{Error, Result};
 use crate::tracer::{AdapterInfo, Backend};
@@ -72,6 +73,13 @@ impl Adapter {
     /// Where an adapter of GL may be used; `None` for the other interfaces.
     pub(in crate::gpu) fn gl_thread(&self) -> Option<Arc<GlThread>> {
         self.handle.gl.as_ref().map(|(thread, _)| thread.clone())
+    }
+
+    /// Whether what one cannot present to the other cannot either: an adapter of another instance may be able to, as
+    /// instances that were made while the environment had no Wayland display make no surfaces of it. A host's device is
+    /// not tried in bhr's own instance.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.info == other.info && (self.instance() == other.instance() || other.host.is_some())
     }
 
     /// How old the EGL display was when an adapter of GL was found; `None` for the other interfaces.
@@ -171,7 +179,7 @@ pub fn absence(backend: Backend) -> &'static str {
 /// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
 /// costs Mesa half a megabyte that it never frees.
 pub fn forget_drivers() {
-    let forgotten = std::mem::take(&mut *found());
+    let forgotten = std::mem::replace(&mut *found(), NOTHING);
     let _driver = driver_lock::lock();
     drop(forgotten);
 }
@@ -216,19 +224,30 @@ const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
 /// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
 /// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
-/// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
-/// This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other way round.
-static FOUND: Mutex<[DriverAdapters; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
+/// under the host. This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other
+/// way round.
+static FOUND: Mutex<[Found; 2]> = Mutex::new(NOTHING);
 
-/// The instance that a search asked, and the adapters it has.
-type DriverAdapters = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
+const NOTHING: [Found; 2] = [const { Found { wayland: false, adapters: (None, Vec::new()) } }; 2];
 
-fn found() -> MutexGuard<'static, [DriverAdapters; 2]> {
+/// The result of a search.
+struct Found {
+    /// Whether the instance makes surfaces of Wayland, where there is one.
+    wayland: bool,
+    adapters: DriverAdapters,
+}
+
+fn found() -> MutexGuard<'static, [Found; 2]> {
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Asked anew as well where the environment has got a Wayland display since.
 fn native(validation: bool) -> DriverAdapters {
-    let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
+    let wayland = instance::may_try_wayland();
+    let kept = || {
+        let kept = &found()[usize::from(validation)];
+        (!kept.adapters.1.is_empty() && (kept.wayland || !wayland)).then(|| kept.adapters.clone())
+    };
     kept().unwrap_or_else(|| {
         // A second thread waits for what the first one finds.
         let _driver = driver_lock::lock();
@@ -238,8 +257,9 @@ fn native(validation: bool) -> DriverAdapters {
                 log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
                 all.remove(wgpu::Backends::VULKAN);
             }
-            let asked = ask_drivers(all, validation);
-            let before = std::mem::replace(&mut found()[usize::from(validation)], asked.clone());
+            let asked = ask_drivers(all, validation, wayland);
+            let now = Found { wayland, adapters: asked.clone() };
+            let before = std::mem::replace(&mut found()[usize::from(validation)], now);
             drop(before);
             asked
         })
@@ -258,7 +278,7 @@ fn gl() -> Option<Vec<RankedAdapter>> {
         thread.run(|| {
             // Adapters that are not wanted are dropped here.
             let _driver = driver_lock::lock();
-            let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
+            let (instance, list) = ask_drivers(wgpu::Backends::GL, false, false);
             keep_display(instance);
             // All adapters of an instance share its context.
             if let Some(first) = list.first() {
@@ -294,20 +314,13 @@ fn keep_display(instance: Option<wgpu::Instance>) {
 }
 
 /// A driver that panics has no adapters.
-fn ask_drivers(backends: wgpu::Backends, validation: bool) -> DriverAdapters {
+fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> DriverAdapters {
     // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
     // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
-    let descriptor =
-        wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
     process_end::watch();
     let _driver = driver_lock::lock();
-    let ask = || {
-        let instance = wgpu::Instance::new(descriptor);
-        let list = pollster::block_on(instance.enumerate_adapters(backends));
-        (Some(instance), list)
-    };
-    let found = catch_unwind(AssertUnwindSafe(ask));
+    let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
     process_end::watch();
     let found = found.unwrap_or_else(|_| {
         log::warn!("the search for adapters of {backends:?} panicked");

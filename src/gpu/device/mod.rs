@@ -8,6 +8,7 @@ pub(in crate::gpu) mod counted;
 pub mod driver_lock;
 pub(in crate::gpu) mod external;
 pub(in crate::gpu) mod faults;
+pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod loader;
 pub(crate) mod process_end;
 pub(in crate::gpu) mod specialise;
