@@ -5,6 +5,8 @@
 
 pub(crate) mod claim;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
+mod visual;
+#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod wayland;
 mod native;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]

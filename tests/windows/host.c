@@ -194,21 +194,71 @@ int host_exists(uint32_t id) {
     return reply != NULL;
 }
 
+int host_depth(const Host *host) {
+    xcb_connection_t         *connection = onlooker();
+    xcb_get_geometry_reply_t *reply = xcb_get_geometry_reply(connection, xcb_get_geometry(connection, host->id), NULL);
+    const int                 depth = reply != NULL ? reply->depth : 0;
+    free(reply);
+    return depth;
+}
+
+static const xcb_visualtype_t *visual_of(const xcb_setup_t *setup, xcb_visualid_t id) {
+    const xcb_screen_t *screen = xcb_setup_roots_iterator(setup).data;
+    for (xcb_depth_iterator_t depth = xcb_screen_allowed_depths_iterator(screen); depth.rem > 0;
+         xcb_depth_next(&depth)) {
+        const xcb_visualtype_t *visuals = xcb_depth_visuals(depth.data);
+        for (int i = 0; i < xcb_depth_visuals_length(depth.data); i++) {
+            if (visuals[i].visual_id == id) {
+                return &visuals[i];
+            }
+        }
+    }
+    return NULL;
+}
+
+/* The image's bytes of a pixel, and of a row of `width` pixels; 0 and 0 for depths that the server has not. */
+static void form_of(const xcb_setup_t *setup, int depth, uint32_t width, uint32_t *pixel, uint32_t *row) {
+    const xcb_format_t *formats = xcb_setup_pixmap_formats(setup);
+    *pixel = *row = 0;
+    for (int i = 0; i < xcb_setup_pixmap_formats_length(setup); i++) {
+        if (formats[i].depth == depth) {
+            const uint32_t pad = formats[i].scanline_pad;
+            *pixel = formats[i].bits_per_pixel / 8u;
+            *row = (width * formats[i].bits_per_pixel + pad - 1) / pad * pad / 8;
+        }
+    }
+}
+
+/* The bits of a mask, as a code of 0 .. 255. */
+static unsigned char code_of(uint32_t pixel, uint32_t mask) {
+    const uint32_t lowest = mask & (~mask + 1), most = mask / lowest;
+    return (unsigned char)(((pixel & mask) / lowest * 255u + most / 2) / most);
+}
+
+/* Servers of this machine's byte order, which is little-endian; a window of 32 bits has its alpha in the highest. */
 int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba) {
     xcb_connection_t      *connection = onlooker();
+    const xcb_setup_t     *setup = xcb_get_setup(connection);
     xcb_get_image_cookie_t asked = xcb_get_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, host->id, 0, 0,
                                                  (uint16_t)width, (uint16_t)height, UINT32_MAX);
     xcb_get_image_reply_t *image = xcb_get_image_reply(connection, asked, NULL);
-    const size_t           pixels = (size_t)width * height;
-    /* 24 bits of colour in 32, blue first: Xvfb's, as the runner starts it. */
-    const int is_there = image != NULL && (size_t)xcb_get_image_data_length(image) == 4 * pixels;
-    for (size_t i = 0; is_there && i < pixels; i++) {
-        const unsigned char *from = xcb_get_image_data(image) + 4 * i;
+    const xcb_visualtype_t *visual = image != NULL ? visual_of(setup, image->visual) : NULL;
+    uint32_t                bytes = 0, row = 0;
+    if (visual != NULL) {
+        form_of(setup, image->depth, width, &bytes, &row);
+    }
+    const int is_there = bytes > 0 && (size_t)xcb_get_image_data_length(image) == (size_t)row * height;
+    for (size_t i = 0; is_there && i < (size_t)width * height; i++) {
+        const unsigned char *from = xcb_get_image_data(image) + i / width * row + i % width * bytes;
         unsigned char       *to = rgba + 4 * i;
-        to[0] = from[2];
-        to[1] = from[1];
-        to[2] = from[0];
-        to[3] = image->depth == 32 ? from[3] : 255;
+        uint32_t             pixel = 0;
+        for (uint32_t k = 0; k < bytes; k++) {
+            pixel |= (uint32_t)from[k] << (8 * k);
+        }
+        to[0] = code_of(pixel, visual->red_mask);
+        to[1] = code_of(pixel, visual->green_mask);
+        to[2] = code_of(pixel, visual->blue_mask);
+        to[3] = image->depth == 32 ? (unsigned char)(pixel >> 24) : 255;
     }
     free(image);
     return is_there;

@@ -33,6 +33,7 @@ void      host_destroy_window(Host *host);
 void      host_close(Host *host); /* the connection, and with it the window; both only once */
 
 Host host_screen(void); /* all of DISPLAY's: to look at only */
+int host_depth(const Host *host); /* bits of a pixel that count; 0 when it is gone */
 int host_exists(uint32_t id); /* DISPLAY's server has a window of this number */
 /* The window's width x height pixels as RGBA; 0 when it has no such part, or is gone. */
 int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba);
