@@ -77,6 +77,8 @@ static int start_with_pipe(Video *video, char *const arguments[]) {
     }
     /* A write to an ffmpeg that has ended shall fail, not end this program. */
     signal(SIGPIPE, SIG_IGN);
+    /* Where a parent had SIGCHLD ignored, as some job servers do, nobody would be told how ffmpeg ended. */
+    signal(SIGCHLD, SIG_DFL);
     error = start(&process, ends[0], arguments);
     close(ends[0]);
     if (error != 0) {
