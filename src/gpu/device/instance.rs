@@ -54,8 +54,9 @@ mod unix {
         is_quiet(socket.as_deref(), display.as_deref(), folder.as_deref())
     }
 
-    /// As wl_display_connect reads the three variables: the socket's number goes before the display's name, wayland-0
-    /// where there is none, which is a path or stands in the runtime folder, whose path begins with a slash.
+    /// The three variables are read in the way of wl_display_connect: the socket's number goes before the display's
+    /// name, wayland-0 where there is none, which is a path or stands in the runtime folder, whose path begins with a
+    /// slash.
     fn is_quiet(socket: Option<&OsStr>, display: Option<&OsStr>, folder: Option<&OsStr>) -> bool {
         if socket.is_some() {
             return false;
@@ -69,7 +70,7 @@ mod unix {
         path < LONGEST_PATH
     }
 
-    /// As wgpu makes an instance and asks it, but for the extension.
+    /// Makes an instance and asks it, in the way of wgpu but for the extension.
     pub(super) fn vulkan_without_wayland(flags: wgpu::InstanceFlags) -> DriverAdapters {
         let descriptor = hal::InstanceDescriptor {
             name: "wgpu",
