@@ -85,7 +85,9 @@ own_target_folder() {
 
 # The example programs, by CMake.
 examples=$target/examples-cmake
-cmake_builds() {
+cmake_builds() (
+    # Scripts that run side by side all ask for them.
+    mkdir -p -- "$target" && exec 9>"$examples.lock" && flock 9 || return 1
     # CMake refuses a folder that it made for another checkout, or at another place: that one is started afresh.
     local cache=$examples/CMakeCache.txt line
     for line in "CMAKE_HOME_DIRECTORY:INTERNAL=$root/examples-c" "CMAKE_CACHEFILE_DIR:INTERNAL=$examples"; do
@@ -93,11 +95,13 @@ cmake_builds() {
     done
     cmake -S "$root/examples-c" -B "$examples" -DBHR_ROOT="$root" -DBHR_LIBRARY="$library" -DCMAKE_BUILD_TYPE=Release &&
         cmake --build "$examples" --parallel 2
-}
+)
 
 # Builds the libraries that the C tests and examples need. cargo test makes the checked one: cargo build would make
 # another, without the features of dependencies that only tests need, and compile those dependencies once more for it.
+# tests/run has built them before it starts the scripts that ask for them, several at a time.
 build_library() {
+    [ -z "${BHR_TESTS_BUILT:-}" ] || return 0
     own_target_folder || return 1
     cargo test --profile checked --no-run --test reference --locked --manifest-path "$root/Cargo.toml" || return 1
     ! runs_all || cargo build --release --lib --locked --manifest-path "$root/Cargo.toml"
@@ -120,8 +124,24 @@ under_valgrind() {
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }
 
-# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it
-# failed.
+# Where each test's name goes, after its seconds and those of the processors: tests/run shows the slowest.
+export BHR_TESTS_TIMES=${BHR_TESTS_TIMES:-/dev/null}
+
+# Sets $processor_ms: what this shell's programs that ended took of the processors, in milliseconds.
+processor_time() {
+    local part
+    times >"$scratch/times"
+    processor_ms=0
+    for part in $(tail -n 1 -- "$scratch/times"); do # such as 1m2.345s
+        part=${part%s}
+        processor_ms=$((processor_ms + 60000 * ${part%m*}))
+        part=${part#*m}
+        processor_ms=$((processor_ms + 10#${part/[.,]/}))
+    done
+}
+
+# count NAME STATUS SECONDS FILE MILLISECONDS: one test's end, and what it took of the processors. Says ok or FAIL and
+# the time; shows what it printed only when it failed.
 count() {
     if [ "$2" -eq 0 ]; then
         passed=$((passed + 1))
@@ -131,14 +151,18 @@ count() {
         printf 'FAIL  %s (exit status %d, %d s)\n' "$1" "$2" "$3"
         tail -n 100 -- "$4" | sed 's/^/      /'
     fi
+    printf '%d\t%d.%03d\t%s\n' "$3" $(($5 / 1000)) $(($5 % 1000)) "$1" >>"$BHR_TESTS_TIMES"
 }
 
 # check NAME COMMAND...: one test, in a subshell.
 check() {
-    local name=$1 begin=$SECONDS status=0
+    local name=$1 begin=$SECONDS status=0 processor_ms before
     shift
+    processor_time
+    before=$processor_ms
     ("$@") >"$scratch/output" 2>&1 </dev/null || status=$?
-    count "$name" "$status" $((SECONDS - begin)) "$scratch/output"
+    processor_time
+    count "$name" "$status" $((SECONDS - begin)) "$scratch/output" $((processor_ms - before))
 }
 
 # begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy.
@@ -153,20 +177,22 @@ begin() {
         sleep 0.2
     done
     (
-        status=0 since=$SECONDS
+        status=0 since=$SECONDS processor_ms=0 scratch=$file.d
+        mkdir -- "$scratch"
         ("$@") >"$file" 2>&1 </dev/null || status=$?
-        printf '%d %d\n' "$status" $((SECONDS - since)) >"$file.end"
+        processor_time
+        printf '%d %d %d\n' "$status" $((SECONDS - since)) "$processor_ms" >"$file.end"
     ) &
     begun+=("$name")
     begun_pids+=($!)
 }
 count_begun() {
-    local i status seconds
+    local i status seconds processor_ms
     for i in "${!begun[@]}"; do
         wait "${begun_pids[i]}"
-        status=1 seconds=0
-        [ -s "$scratch/begun-$i.end" ] && read -r status seconds <"$scratch/begun-$i.end"
-        count "${begun[i]}" "$status" "$seconds" "$scratch/begun-$i"
+        status=1 seconds=0 processor_ms=0
+        [ -s "$scratch/begun-$i.end" ] && read -r status seconds processor_ms <"$scratch/begun-$i.end"
+        count "${begun[i]}" "$status" "$seconds" "$scratch/begun-$i" "$processor_ms"
     done
     begun=()
     begun_pids=()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # observatory.sh -- tests of examples-c/observatory: its fluxes, files, light curves and messages. Functions only, each
 # one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch and $tests, $examples (the folder of the
-# programs), tests/run's `picture`, ImageMagick, and Python without any package.
+# programs), tests/examples/run's `picture`, ImageMagick, and Python without any package.
 # shellcheck shell=bash disable=SC2154
 
 # observatory_says FILE ARGUMENTS...: runs it and keeps what it prints.
