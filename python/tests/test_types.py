@@ -33,6 +33,16 @@ def show(ctx: bhr.Context, out: npt.NDArray[np.float32]) -> bhr.Frame:
     ctx.camera = ctx.camera.replace(fov_y=0.5)
     ctx.disk = bhr.Disk(temperature=9000.0, flags=bhr.DiskFlags.PLUNGES | bhr.DiskFlags.RETROGRADE)
     ctx.disk = None
+    ctx.set_preset("physical")
+    ctx.view = "redshift"
+    named: bhr.View = ctx.view
+    ctx.camera = bhr.Camera(motion="free_fall").replace(projection="fisheye")
+    motion: bhr.Motion = ctx.camera.motion
+    ctx.sky = bhr.Sky("stars | grid")
+    ctx.effects = "beaming"
+    ctx.set_sky_map("sky.exr")
+    ctx.render_outputs(4, 3, ["light", (bhr.OutputKind.DISK, 1), ("view", "order")], samples=4)
+    print(named, motion, bhr.Frame.empty(4, 3, "rgba16f"), ctx.render(4, 3, format="rgba32f", samples=4))
     ctx.axis = (0.0, 0.0, 1.0)
     spin: float = ctx.spin
     camera, elapsed = ctx.advance(bhr.Camera.orbit(10.0, 0.0, spin, motion=bhr.Motion.FREE_FALL), 1.0)
@@ -56,7 +66,11 @@ asyncio.run(main())
 #: Mistakes that a type checker finds, each in a line of its own.
 MISTAKES = """
 import bhr
-ctx = bhr.Context("cpu")
+ctx = bhr.Context("gpu")
+ctx.set_preset("cinema")
+ctx.view = "heat"
+ctx.camera = bhr.Camera(motion="falling")
+ctx.spn = 0.5
 ctx.camera = bhr.Disk()
 ctx.view = bhr.Preset.PHYSICAL
 ctx.render(32, 18, format="png")

@@ -4,24 +4,36 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import logging
 import operator
 import os
+import threading
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Backend, Effects, Format, OutputKind, Preset, PresetMatter, Status, View
+from ._constants import AdapterFlags, Backend, Effects, Format, OutputKind, Preset, PresetMatter, Status, View
 from ._ffi import ffi
-from ._frame import Frame, _path
+from ._frame import Frame, _path, load
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
-from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
-from ._rays import HIT, PROJECTED, RAY, TRANSFER
+from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
+from ._names import (
+    BackendLike,
+    FormatLike,
+    OutputKindLike,
+    PresetLike,
+    PresetMatterLike,
+    ViewLike,
+    ViewName,
+    flags,
+    member,
+)
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -30,7 +42,6 @@ from ._structs import (
     FrameStats,
     HoleInfo,
     HotSpot,
-    ProjectedPoint,
     Quality,
     Region,
     Sky,
@@ -40,6 +51,7 @@ from ._structs import (
     doubles,
     new,
 )
+from ._tracing import Tracing
 
 _LOGGER = logging.getLogger("bhr")
 _LOGGER.addHandler(logging.NullHandler())
@@ -47,40 +59,74 @@ _LOGGER.addHandler(logging.NullHandler())
 _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
-class Context:
+class Context(Tracing):
     """A scene and what traces it. A new one shows a hole of mass 1 without spin, with a golden disk, before the stars.
 
     Setting an attribute changes the scene; an attribute that is read is a copy, which can be set again after `replace`.
-    Any thread may call; calls on one context wait for each other, and other Python threads run meanwhile.
+    Any thread may call; calls on one context wait for each other, and other Python threads run meanwhile. Names stand
+    for members of enumerations: `ctx.set_preset("physical")`.
     """
+
+    # A slip in an attribute's name is an AttributeError instead of a setting that nobody reads.
+    __slots__ = ("__weakref__", "_adapter_name", "_quality_lock", "_region", "_targets", "_time", "_view", "_waiter")
 
     def __init__(
         self,
-        backend: Backend = Backend.AUTO,
+        backend: BackendLike = Backend.AUTO,
         *,
         adapter_index: int | None = None,
         cpu_threads: int = 0,
         validation: bool = False,
         logger: logging.Logger = _LOGGER,
     ) -> None:
-        """Opens the best adapter of a backend, or the one at this index of `adapters()`. `logger` is told what its
-        level of this moment lets through."""
+        """Opens the best adapter of a backend, or the one at this index of `adapters()`. AUTO takes a GPU, and without
+        one the CPU tracer, whose first frame of 640 x 360 pixels is there in a fifth of the time that a software driver
+        needs, as that compiles its programs first; Backend.VULKAN takes such a driver, which traces a ray in a third
+        of the time, for long films. `logger` is told what its level of this moment lets through."""
         begin()
         options = ffi.new("BhrContextOptions *")
         check(lib.bhr_context_options_init(options, ffi.sizeof("BhrContextOptions")))
         options.flags = lib.BHR_CONTEXT_VALIDATION if validation else 0
-        options.backend = Backend(backend)
+        options.backend = member(Backend, backend, "backend")
         if adapter_index is not None:
             options.adapter_index = operator.index(adapter_index)
         options.cpu_threads = operator.index(cpu_threads)
         options.log_level = log_level(logger)
         self._gate = Gate(options, logger)
+        if options.backend == Backend.AUTO and adapter_index is None and self._on_a_software_driver():
+            logger.info("no GPU was usable: the CPU tracer takes the place of %s", self.adapter.name)
+            self._gate.close()
+            options.backend = Backend.CPU
+            self._gate = Gate(options, logger)
+        self._name_adapter()
+        self._quality_lock = threading.RLock()
         self._waiter = Waiter()
         self._view, self._time = View.LIGHT, 0.0
         self._region: Region | None = None
         #: What frames read from targets (interop.py), which must not end while it is set.
         self._targets: dict[str, Any] = {}
         _contexts.add(self)
+
+    def _on_a_software_driver(self) -> bool:
+        adapter = self.adapter
+        return adapter.backend != Backend.CPU and bool(adapter.flags & AdapterFlags.SOFTWARE)
+
+    def _name_adapter(self) -> None:
+        adapter = self.adapter
+        self._adapter_name = f"{adapter.name} ({adapter.backend.name})"
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return "<bhr.Context, closed>"
+        parts = [f"<bhr.Context on {self._adapter_name}"]
+        if not (inside_callback() or forked()):  # where the library answers nothing
+            with contextlib.suppress(Error):
+                mass, spin, _ = self._hole()
+                scene = [f"mass {mass:g}", f"spin {spin:g}", "no disk" if self.disk is None else "a disk"]
+                for found, name in (self.volumes, "volume"), (self.hot_spots, "hot spot"):
+                    scene += [f"{len(found)} {name}" + ("s" if len(found) > 1 else "")] if found else []
+                parts += scene
+        return ", ".join(parts) + ">"
 
     # ---- life ----
 
@@ -116,6 +162,7 @@ class Context:
         """Opens the device anew after DeviceLost; the scene stays."""
         with self._gate as context:
             check(lib.bhr_context_recover(context))
+        self._name_adapter()
 
     @property
     def adapter(self) -> AdapterInfo:
@@ -200,7 +247,7 @@ class Context:
 
     @camera.setter
     def camera(self, camera: Camera) -> None:
-        self._set(lib.bhr_set_camera, camera.to_c())
+        self._set(lib.bhr_set_camera, Camera.c_of(camera, "camera"))
 
     def advance(self, camera: Camera, proper_time: float) -> tuple[Camera, float]:
         """A camera moved along its world line about this hole by a proper time, and the scene time that went by. The
@@ -222,7 +269,7 @@ class Context:
 
     @disk.setter
     def disk(self, disk: Disk | None) -> None:
-        self._set(lib.bhr_set_disk, ffi.NULL if disk is None else disk.to_c())
+        self._set(lib.bhr_set_disk, Disk.c_of(disk, "disk", or_none=True))
 
     @property
     def volumes(self) -> tuple[Volume, ...]:
@@ -234,7 +281,7 @@ class Context:
 
     @volumes.setter
     def volumes(self, volumes: Sequence[Volume]) -> None:
-        given = ffi.new("BhrVolume[]", [volume.to_c()[0] for volume in volumes])
+        given = Volume.array_of(volumes, "volumes")
         with self._gate as context:
             check(lib.bhr_set_volumes(context, given, ffi.sizeof("BhrVolume"), len(given)))
 
@@ -248,7 +295,7 @@ class Context:
 
     @hot_spots.setter
     def hot_spots(self, hot_spots: Sequence[HotSpot]) -> None:
-        given = ffi.new("BhrHotSpot[]", [spot.to_c()[0] for spot in hot_spots])
+        given = HotSpot.array_of(hot_spots, "hot_spots")
         with self._gate as context:
             check(lib.bhr_set_hot_spots(context, given, ffi.sizeof("BhrHotSpot"), len(given)))
 
@@ -259,12 +306,19 @@ class Context:
     @sky.setter
     def sky(self, sky: Sky | None) -> None:
         """None: black."""
-        self._set(lib.bhr_set_sky, ffi.NULL if sky is None else sky.to_c())
+        self._set(lib.bhr_set_sky, Sky.c_of(sky, "sky", or_none=True))
 
-    def set_sky_map(self, picture: Frame | npt.NDArray[Any] | None) -> None:
-        """Gives SkyFlags.MAP its all-round picture, which is copied; None removes it. The north pole is at the top,
-        right ascension 0 in the middle, and it grows to the left."""
-        frame = Frame(picture) if isinstance(picture, np.ndarray) else picture
+    def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
+        """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes
+        it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left."""
+        if isinstance(picture, np.ndarray):
+            frame: Frame | None = Frame(picture)
+        elif isinstance(picture, (str, os.PathLike)):
+            frame = load(picture)
+        elif picture is None or isinstance(picture, Frame):
+            frame = picture
+        else:
+            raise TypeError(f"a sky map is a path, a bhr.Frame or a numpy array, not {type(picture).__name__}")
         self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
         self._targets.pop("sky", None)
 
@@ -274,7 +328,7 @@ class Context:
 
     @film.setter
     def film(self, film: Film) -> None:
-        self._set(lib.bhr_set_film, film.to_c())
+        self._set(lib.bhr_set_film, Film.c_of(film, "film"))
 
     @property
     def quality(self) -> Quality:
@@ -282,7 +336,9 @@ class Context:
 
     @quality.setter
     def quality(self, quality: Quality) -> None:
-        self._set(lib.bhr_set_quality, quality.to_c())
+        given = Quality.c_of(quality, "quality")
+        with self._quality_kept():
+            self._set(lib.bhr_set_quality, given)
 
     @property
     def effects(self) -> Effects:
@@ -293,17 +349,17 @@ class Context:
         return Effects(effects[0])
 
     @effects.setter
-    def effects(self, effects: Effects) -> None:
-        self._set(lib.bhr_set_effects, Effects(effects) & Effects.ALL)
+    def effects(self, effects: Effects | str) -> None:
+        self._set(lib.bhr_set_effects, flags(Effects, effects, "effects") & Effects.ALL)
 
-    def set_preset(self, preset: Preset) -> None:
+    def set_preset(self, preset: PresetLike) -> None:
         """Gives disk, sky, film and effects the values of a named look."""
-        self._set(lib.bhr_set_preset, Preset(preset))
+        self._set(lib.bhr_set_preset, member(Preset, preset, "preset"))
 
     def set_preset_with(
         self,
-        preset: Preset,
-        matter: PresetMatter = PresetMatter.AUTO,
+        preset: PresetLike,
+        matter: PresetMatterLike = PresetMatter.AUTO,
         *,
         size: tuple[int, int] = (0, 0),
         frame_ms: float = 0.0,
@@ -312,12 +368,13 @@ class Context:
         disk; AUTO, whichever a frame of `size` in `frame_ms` allows, which is measured once. Returns which it is. 0
         stands for the defaults, (1920, 1080) and 16."""
         options = new("BhrPresetOptions")
-        options.matter = PresetMatter(matter)
+        look = member(Preset, preset, "preset")
+        options.matter = member(PresetMatter, matter, "matter")
         options.width, options.height = size
         options.frame_ms = frame_ms
         chosen = ffi.new("BhrPresetMatter *")
         with self._gate as context:
-            check(lib.bhr_set_preset_with(context, Preset(preset), options, chosen))
+            check(lib.bhr_set_preset_with(context, look, options, chosen))
         return PresetMatter(chosen[0])
 
     @property
@@ -336,9 +393,10 @@ class Context:
         return self._view
 
     @view.setter
-    def view(self, view: View) -> None:
-        self._set(lib.bhr_set_view, View(view))
-        self._view = View(view)
+    def view(self, view: ViewLike) -> None:
+        chosen = member(View, view, "view")
+        self._set(lib.bhr_set_view, chosen)
+        self._view = chosen
 
     @property
     def region(self) -> Region | None:
@@ -347,7 +405,7 @@ class Context:
 
     @region.setter
     def region(self, region: Region | None) -> None:
-        self._set(lib.bhr_set_region, ffi.NULL if region is None else region.to_c())
+        self._set(lib.bhr_set_region, Region.c_of(region, "region", or_none=True))
         self._region = region
 
     def set_occluder(self, distances: Frame | npt.NDArray[Any] | None, *, lensed: bool = False) -> None:
@@ -360,20 +418,41 @@ class Context:
 
     # ---- frames ----
 
+    def _quality_kept(self) -> contextlib.AbstractContextManager[Any]:
+        """Within it no other thread sets the quality. Callbacks, to whom the library refuses that, must not wait for
+        the frame that waits for them."""
+        return contextlib.nullcontext() if inside_callback() else self._quality_lock
+
+    @contextlib.contextmanager
+    def _sampled(self, samples: int | None) -> Iterator[None]:
+        """Within it frames have so many rays a pixel, and no other thread sets the quality; None: as it is."""
+        if samples is None:
+            yield
+            return
+        with self._quality_kept():
+            before = self.quality
+            self.quality = before.replace(samples_per_pixel=samples)
+            try:
+                yield
+            finally:
+                self.quality = before
+
     def render(
         self,
         width: int | None = None,
         height: int | None = None,
         *,
-        format: Format | None = None,
+        format: FormatLike | None = None,
         transparent: bool = False,
+        samples: int | None = None,
         out: Frame | npt.NDArray[Any] | None = None,
         progress: Progress | None = None,
     ) -> Frame:
         """Renders the scene as it is now, into `out` if that is given; width and height may then be left out. Default
-        format: RGBA8_SRGB, or that of `out`. `transparent` leaves the sky out, and alpha says where it was."""
+        format: RGBA8_SRGB, or that of `out`. `transparent` leaves the sky out, and alpha says where it was. `samples`:
+        rays of a pixel, for this frame in the place of Quality.samples_per_pixel."""
         frame, image = _target(width, height, format, transparent, out)
-        with self._gate as context, Call(progress) as call:
+        with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_render_image(context, image))
         return frame
 
@@ -382,8 +461,9 @@ class Context:
         width: int | None = None,
         height: int | None = None,
         *,
-        format: Format | None = None,
+        format: FormatLike | None = None,
         transparent: bool = False,
+        samples: int | None = None,
         out: Frame | npt.NDArray[Any] | None = None,
         progress: Progress | None = None,
     ) -> Job:
@@ -391,16 +471,16 @@ class Context:
         now. At most 64 jobs of a context may be unfinished. `progress` is called on a thread of the package."""
         frame, image = _target(width, height, format, transparent, out)
         pointer = ffi.new("BhrJob **")
-        with self._gate as context:
+        with self._sampled(samples), self._gate as context:
             check(lib.bhr_render_image_async(context, image, pointer))
             job = Job(self, pointer[0], frame, progress)
             self._waiter.add(job)
         return job
 
-    def render_views(self, width: int, height: int, views: Sequence[View]) -> npt.NDArray[Any]:
+    def render_views(self, width: int, height: int, views: Sequence[ViewLike]) -> npt.NDArray[Any]:
         """The values of several views as a structured array of shape (height, width), a float32 field for each, named
         "redshift", "order" and so on. Frames that other threads ask for meanwhile may show these views."""
-        chosen = [View(view) for view in views]
+        chosen = [member(View, view, "view") for view in views]
         values = np.empty((height, width), [(view.name.lower(), np.float32) for view in chosen])
         plane = Frame.empty(width, height, Format.R32F)
         before = self.view
@@ -416,29 +496,32 @@ class Context:
         self,
         width: int,
         height: int,
-        outputs: Sequence[OutputKind | tuple[OutputKind, int]],
+        outputs: Sequence[OutputKindLike | tuple[OutputKindLike, int | ViewName]],
         *,
-        format: Format = Format.RGBA32F,
+        format: FormatLike = Format.RGBA32F,
         transparent: bool = False,
+        samples: int | None = None,
         save: str | os.PathLike[str] | None = None,
         progress: Progress | None = None,
     ) -> list[Frame]:
         """The picture, and what belongs to it: distances, the sky's directions, places on the disk and so on, a frame
         for each of `outputs`. POSITION, DISK and VIEW may be pairs with the number of a crossing, or the view. `format`
-        and `transparent` are the picture's. `save`: an .exr file that gets them all as layers."""
+        and `transparent` are the picture's, as `samples`, for which `render` says more. `save`: an .exr file that gets
+        them all as layers."""
         single = {OutputKind.DEPTH, OutputKind.TRANSMISSION, OutputKind.VIEW}
         array = ffi.new("BhrOutput[]", len(outputs))
         frames, images = [], []
+        format = member(Format, format, "format")
         for output, c in zip(outputs, array):
-            kind, index = output if isinstance(output, tuple) else (output, 0)
+            kind, index = output_of(output)
             other = Format.R32F if kind in single else Format.RGBA32F
             frame = Frame.empty(width, height, format if kind == OutputKind.LIGHT else other)
             frames.append(frame)
             images.append(frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0))
             c.struct_size = ffi.sizeof("BhrOutput")
-            c.kind, c.index, c.image = OutputKind(kind), index, images[-1]
+            c.kind, c.index, c.image = kind, index, images[-1]
         arguments = (array, ffi.sizeof("BhrOutput"), len(array))
-        with self._gate as context, Call(progress) as call:
+        with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_render_outputs(context, *arguments, ffi.NULL))
             if save is not None:
                 check(lib.bhr_save_outputs(context, *arguments, _path(save)))
@@ -449,126 +532,43 @@ class Context:
         width: int,
         height: int,
         *,
-        format: Format = Format.RGBA8_SRGB,
+        format: FormatLike = Format.RGBA8_SRGB,
         transparent: bool = False,
+        samples: int | None = None,
         progress: Progress | None = None,
     ) -> None:
         """Makes everything that frames of the present scene need, so that the next one is no slower than later ones."""
         image = new("BhrImage")
-        image.format, image.width, image.height = Format(format), width, height
+        image.format, image.width, image.height = member(Format, format, "format"), width, height
         image.flags = lib.BHR_IMAGE_TRANSPARENT if transparent else 0
-        with self._gate as context, Call(progress) as call:
+        with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_prepare(context, image))
 
-    # ---- rays ----
 
-    def camera_rays(self, width: int, height: int) -> npt.NDArray[np.void]:
-        """The rays of a frame through the centres of its pixels: dtype RAY, shape (height, width)."""
-        rays = np.zeros((height, width), RAY)
-        with self._gate as context:
-            check(lib.bhr_camera_rays(context, width, height, _pointer("BhrRay *", rays)))
-        return rays
-
-    def camera_ray(self, width: int, height: int, x: float, y: float) -> npt.NDArray[np.void]:
-        """One of those rays, at a pixel position; (0, 0) is the frame's top-left corner. Its shape is ()."""
-        ray = np.zeros((), RAY)
-        with self._gate as context:
-            check(lib.bhr_camera_ray(context, width, height, x, y, _pointer("BhrRay *", ray)))
-        return ray
-
-    def project_point(self, width: int, height: int, point: VectorLike, order: int = 0) -> ProjectedPoint:
-        """Where in a frame a point of the scene appears: by light that went half round the hole `order` times."""
-        struct = new("BhrProjectedPoint")
-        with self._gate as context:
-            check(lib.bhr_project_point(context, width, height, doubles(point, 3, "point"), order, struct))
-        return ProjectedPoint.from_c(struct)
-
-    def project_points(
-        self, width: int, height: int, points: npt.ArrayLike, order: int = 0
-    ) -> npt.NDArray[np.void]:
-        """project_point for many points, of the shape (..., 3), on several threads: dtype PROJECTED, of the shape
-        (...). `apparent` is where a rasteriser draws a vertex so that it appears where light shows it."""
-        places = np.ascontiguousarray(points, np.float64)
-        if places.ndim < 1 or places.shape[-1] != 3:
-            raise ValueError(f"points have the shape {places.shape}; the last side must be 3")
-        found = np.zeros(places.shape[:-1], PROJECTED)
-        with self._gate as context:
-            begin, out = _pointer("double *", places), _pointer("BhrProjectedPoint *", found)
-            check(lib.bhr_project_points(context, width, height, begin, found.size, order, out, PROJECTED.itemsize))
-        return found
-
-    def trace(
-        self, rays: npt.NDArray[np.void] | np.void, *, out: npt.NDArray[np.void] | None = None
-    ) -> npt.NDArray[np.void]:
-        """Traces an array of rays of any shape, and returns their ends, dtype HIT, in an array of that shape, or in
-        `out`. Rays that are contiguous in memory are not copied; `out` must be."""
-        packed = _rays(rays)
-        if out is None:
-            out = np.zeros(packed.shape, HIT)
-        elif out.dtype != HIT or out.shape != packed.shape:
-            raise ValueError(f"out has dtype {out.dtype} and shape {out.shape} instead of HIT and {packed.shape}")
-        elif not (out.flags.c_contiguous and out.flags.writeable):
-            raise ValueError("out is not contiguous, or read-only")
-        with self._gate as context:
-            ray, hit = _pointer("BhrRay *", packed), _pointer("BhrHit *", out)
-            check(lib.bhr_trace_rays(context, ray, RAY.itemsize, packed.size, hit, HIT.itemsize))
-        return out
-
-    def transfer(self, rays: npt.NDArray[np.void] | np.void) -> npt.NDArray[np.void]:
-        """The matter with depth along an array of rays of any shape, thin disk and sky left out: intensities, optical
-        depths and light, dtype TRANSFER, in an array of that shape. In double precision on the CPU, whatever the
-        backend."""
-        packed = _rays(rays)
-        found = np.zeros(packed.shape, TRANSFER)
-        with self._gate as context:
-            ray, out = _pointer("BhrRay *", packed), _pointer("BhrTransfer *", found)
-            check(lib.bhr_transfer_rays(context, ray, RAY.itemsize, packed.size, out, TRANSFER.itemsize))
-        return found
-
-    def trace_path(self, ray: npt.NDArray[np.void] | np.void, capacity: int = 65536) -> npt.NDArray[np.float64]:
-        """The curve that a ray follows, at most `capacity` points of x, y, z and t: shape (points, 4)."""
-        packed = _rays(ray)
-        if packed.size != 1:
-            raise ValueError(f"{packed.size} rays instead of one")
-        points, count = np.empty((min(capacity, 65536), 4)), ffi.new("uint32_t *")
-        with self._gate as context:
-            check(
-                lib.bhr_trace_path(
-                    context, _pointer("BhrRay *", packed), len(points), _pointer("double *", points), count
-                )
-            )
-        return points[: count[0]].copy()
-
-
-def _pointer(kind: str, array: npt.NDArray[Any]) -> Any:
-    return ffi.cast(kind, array.__array_interface__["data"][0])
-
-
-def _rays(rays: npt.NDArray[np.void] | np.void) -> npt.NDArray[np.void]:
-    """Rays as the library reads them."""
-    if isinstance(rays, np.void):
-        rays = np.asarray(rays)
-    if not isinstance(rays, np.ndarray) or rays.dtype != RAY:
-        raise TypeError("rays are a numpy array of the dtype RAY: bhr.rays and Context.camera_rays make one")
-    return np.asarray(rays, order="C")
+def output_of(output: Any) -> tuple[OutputKind, int]:
+    """The kind of an output, and the number of its crossing or its view."""
+    named, index = output if isinstance(output, tuple) else (output, 0)
+    kind = member(OutputKind, named, "output")
+    return kind, member(View, index, "view") if kind == OutputKind.VIEW else operator.index(index)
 
 
 def _target(
     width: int | None,
     height: int | None,
-    format: Format | None,
+    format: FormatLike | None,
     transparent: bool,
     out: Frame | npt.NDArray[Any] | None,
 ) -> tuple[Frame, Any]:
     """The frame to render into, and the struct that describes it."""
+    format = None if format is None else member(Format, format, "format")
     if out is None:
         if width is None or height is None:
             raise TypeError("a frame needs width and height, or an array in `out`")
         frame = Frame.empty(operator.index(width), operator.index(height), format or Format.RGBA8_SRGB)
     else:
         frame = out if isinstance(out, Frame) else Frame(out, format)
-        if format not in (None, frame.format):
-            raise ValueError(f"out has the format {frame.format.name}, not {Format(format).name}")
+        if format is not None and format != frame.format:
+            raise ValueError(f"out has the format {frame.format.name}, not {format.name}")
         if width not in (None, frame.width) or height not in (None, frame.height):
             raise ValueError(f"out has {frame.width} x {frame.height} pixels, not {width} x {height}")
     return frame, frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)

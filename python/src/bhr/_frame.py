@@ -14,6 +14,7 @@ import numpy.typing as npt
 from ._constants import Format
 from ._ffi import ffi
 from ._library import check, lib
+from ._names import FormatLike, member
 from ._structs import new
 
 _DTYPES: dict[Format, type[np.generic]] = {
@@ -28,10 +29,13 @@ _DTYPES: dict[Format, type[np.generic]] = {
 class Frame:
     """A picture, or the values of a view. `array` is its memory; np.asarray(frame) is the same array."""
 
+    # A slip in an attribute's name is an AttributeError.
+    __slots__ = ("__weakref__", "array", "format")
+
     array: npt.NDArray[Any]
     format: Format
 
-    def __init__(self, array: npt.NDArray[Any], format: Format | None = None) -> None:
+    def __init__(self, array: npt.NDArray[Any], format: FormatLike | None = None) -> None:
         """Wraps an array, without a copy: uint8 (RGBA8_SRGB, or BGRA8_SRGB if `format` says so), float16 or float32 of
         shape (height, width, 4), or float32 of shape (height, width). Rows may have any stride; pixels are packed."""
         self.format = _format(array, format)
@@ -39,9 +43,9 @@ class Frame:
         self.image()
 
     @classmethod
-    def empty(cls, width: int, height: int, format: Format = Format.RGBA8_SRGB) -> Frame:
+    def empty(cls, width: int, height: int, format: FormatLike = Format.RGBA8_SRGB) -> Frame:
         """A frame with memory of its own, not yet filled."""
-        format = Format(format)
+        format = member(Format, format, "format")
         shape = (height, width) if format == Format.R32F else (height, width, 4)
         return cls(np.empty(shape, _DTYPES[format]), format)
 
@@ -109,11 +113,14 @@ class Frame:
         return f"<bhr.Frame {self.width} x {self.height}, {self.format.name}>"
 
 
-def _format(array: Any, format: Format | None) -> Format:
+def _format(array: Any, format: FormatLike | None) -> Format:
     """The format of an array, which `format` may choose where there are two."""
     if not isinstance(array, np.ndarray):
-        raise TypeError(f"a frame is a numpy array, not {type(array).__name__}; np.asarray makes one of most memory")
-    given = None if format is None else Format(format)
+        advice = "np.asarray makes one of most memory"
+        if isinstance(array, (str, os.PathLike)):
+            advice = "bhr.load reads files, and Frame.save writes them"
+        raise TypeError(f"a frame is a numpy array, not {type(array).__name__}; {advice}")
+    given = None if format is None else member(Format, format, "format")
     if not array.dtype.isnative:
         raise TypeError("the array's bytes are in the order of another machine")
     for known, dtype in _DTYPES.items():

@@ -7,7 +7,7 @@ from __future__ import annotations
 import dataclasses
 import enum
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar, TypeVar, Union
 
 import numpy as np
@@ -28,13 +28,31 @@ from ._constants import (
     Motion,
     Projection,
     SkyFlags,
+    Status,
     ToneMap,
     VolumeFlags,
     VolumeResolution,
     VolumeShape,
 )
 from ._ffi import ffi
-from ._library import begin, check, lib
+from ._library import begin, check, error, lib
+from ._names import (
+    ColourMapName,
+    DiskReferenceName,
+    EmissionLawName,
+    EyeName,
+    FlowName,
+    MethodName,
+    MotionName,
+    Named,
+    ProjectionName,
+    ToneMapName,
+    VolumeResolutionName,
+    VolumeShapeName,
+    flags as flags_of,
+    member,
+    named,
+)
 from ._rays import RAY
 
 Vector = tuple[float, float, float]
@@ -50,6 +68,10 @@ def doubles(values: VectorLike, count: int, name: str) -> tuple[float, ...]:
     if len(numbers) != count:
         raise ValueError(f"{name} has {len(numbers)} numbers instead of {count}")
     return numbers
+
+
+def _constant(kind: type[enum.IntEnum] | type[enum.IntFlag], value: object, name: str) -> enum.IntEnum | enum.IntFlag:
+    return flags_of(kind, value, name) if issubclass(kind, enum.IntFlag) else member(kind, value, name)
 
 
 def new(name: str) -> Any:
@@ -72,7 +94,7 @@ class _Struct:
             value = getattr(self, name)
             kind = types[name].type
             if name in self.c_enums:
-                value = self.c_enums[name](value)
+                value = _constant(self.c_enums[name], value, name)
             elif kind.kind == "array" and kind.item.cname == "double":
                 value = doubles(value, kind.length, name)
             elif kind.cname == "double":
@@ -84,6 +106,23 @@ class _Struct:
     def replace(self: _Self, **changes: Any) -> _Self:
         """A copy with other values in these fields."""
         return dataclasses.replace(self, **changes)  # type: ignore[type-var]
+
+    @classmethod
+    def c_of(cls, value: object, name: str, or_none: bool = False) -> Any:
+        """The C struct of an argument, which `name` is for messages; NULL of None where None is allowed."""
+        if or_none and value is None:
+            return ffi.NULL
+        if not isinstance(value, cls):
+            wanted = f"bhr.{cls.__name__}" + (" or None" if or_none else "")
+            raise TypeError(f"{name} is a {wanted}, not {type(value).__name__}")
+        return value.to_c()
+
+    @classmethod
+    def array_of(cls, values: object, name: str) -> Any:
+        """The C array of an argument that is a sequence of these structs."""
+        if isinstance(values, _Struct) or not isinstance(values, Iterable):
+            raise TypeError(f"{name} are a list of bhr.{cls.__name__}, not {type(values).__name__}")
+        return ffi.new(f"{cls.c_name}[]", [cls.c_of(value, f"each of {name}")[0] for value in values])
 
     def to_c(self) -> Any:
         struct = new(self.c_name)
@@ -108,6 +147,10 @@ def _names(cls: type[_Struct]) -> list[str]:
     return [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
 
 
+#: The largest elevation of an orbit, with room for the rounding of single precision.
+_POLE = 0.5 * np.pi + 1e-6
+
+
 @dataclasses.dataclass(frozen=True)
 class Camera(_Struct):
     """An observer with a lens. Lengths in scene units, angles in radians."""
@@ -121,8 +164,8 @@ class Camera(_Struct):
     up: Vector = (0.0, 0.0, 1.0)
     #: The full vertical angle of PERSPECTIVE, (0, pi); across the circle of FISHEYE, (0, 2 pi].
     fov_y: float = 0.25 * np.pi
-    projection: Projection = Projection.PERSPECTIVE
-    motion: Motion = Motion.STATIC
+    projection: Named[Projection, ProjectionName] = named(Projection.PERSPECTIVE)
+    motion: Named[Motion, MotionName] = named(Motion.STATIC)
     #: v / c for VELOCITY, against the local static observer (ZAMO).
     velocity: Vector = (0.0, 0.0, 0.0)
     #: The borders of a FRUSTUM's picture on the plane at distance 1 ahead, to the right and up.
@@ -134,12 +177,18 @@ class Camera(_Struct):
     jitter: tuple[float, float] = (0.0, 0.0)
     #: For EQUIRECT: the distance of two eyes, and for which of them the picture is.
     eye_distance: float = 0.0
-    eye: Eye = Eye.MIDDLE
+    eye: Named[Eye, EyeName] = named(Eye.MIDDLE)
 
     @classmethod
     def orbit(cls, distance: float, azimuth: float, elevation: float, **fields: Any) -> Camera:
         """A camera that looks at the hole, at this distance from it, azimuth from +x towards +y, and elevation from the
-        xy plane towards +z."""
+        xy plane towards +z, -pi/2 .. pi/2. Angles are in radians: math.radians(20) makes them of degrees."""
+        if abs(elevation) > _POLE:
+            raise error(
+                Status.INVALID_ARGUMENT,
+                f"elevation is {elevation:g}, outside -pi/2 .. pi/2; angles are in radians: for degrees,"
+                f" math.radians({elevation:g})",
+            )
         struct = cls(**fields).to_c()
         check(lib.bhr_camera_orbit(struct, distance, azimuth, elevation))
         return cls.from_c(struct)
@@ -156,22 +205,23 @@ class Camera(_Struct):
 
     @classmethod
     def from_matrices(
-        cls, view: npt.ArrayLike, projection: npt.ArrayLike, flags: int = MatrixFlags(0), **fields: Any
+        cls, view: npt.ArrayLike, projection: npt.ArrayLike, flags: int | str = MatrixFlags(0), **fields: Any
     ) -> Camera:
         """A camera from the matrices of a rasteriser, 4 x 4, as they multiply column vectors."""
         struct = cls(**fields).to_c()
         matrices = [doubles(np.asarray(m, float).ravel(), 16, "a matrix") for m in (view, projection)]
-        check(lib.bhr_camera_from_matrices(struct, *matrices, flags | MatrixFlags.ROW_MAJOR))
+        layout = flags_of(MatrixFlags, flags, "flags") | MatrixFlags.ROW_MAJOR
+        check(lib.bhr_camera_from_matrices(struct, *matrices, layout))
         return cls.from_c(struct)
 
     def matrices(
-        self, width: int, height: int, near_z: float, far_z: float = np.inf, flags: int = MatrixFlags(0)
+        self, width: int, height: int, near_z: float, far_z: float = np.inf, flags: int | str = MatrixFlags(0)
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """View and projection, 4 x 4, as they multiply column vectors, for frames of this size."""
         view, projection = np.zeros((4, 4)), np.zeros((4, 4))
         outs = [ffi.cast("double *", m.ctypes.data) for m in (view, projection)]
-        flags = flags | MatrixFlags.ROW_MAJOR
-        check(lib.bhr_camera_matrices(self.to_c(), width, height, near_z, far_z, flags, *outs))
+        layout = flags_of(MatrixFlags, flags, "flags") | MatrixFlags.ROW_MAJOR
+        check(lib.bhr_camera_matrices(self.to_c(), width, height, near_z, far_z, layout, *outs))
         return view, projection
 
 
@@ -194,9 +244,9 @@ class Disk(_Struct):
     #: The contrast of the structure that orbits with the matter, 0 .. 1.
     turbulence: float = 1.0
     seed: int = 0
-    flags: DiskFlags = DiskFlags(0)
-    reference: DiskReference = DiskReference.AT_MEDIAN
-    emission_law: EmissionLaw = EmissionLaw.ISOTROPIC
+    flags: Named[DiskFlags, str] = named(DiskFlags(0))
+    reference: Named[DiskReference, DiskReferenceName] = named(DiskReference.AT_MEDIAN)
+    emission_law: Named[EmissionLaw, EmissionLawName] = named(EmissionLaw.ISOTROPIC)
     edge_softness: float = 0.4
 
 
@@ -207,9 +257,9 @@ class Volume(_Struct):
     c_name: ClassVar[str] = "BhrVolume"
     c_enums = {"flags": VolumeFlags, "shape": VolumeShape, "flow": Flow}
 
-    shape: VolumeShape = VolumeShape.DISK
-    flow: Flow = Flow.KEPLERIAN
-    flags: VolumeFlags = VolumeFlags(0)
+    shape: Named[VolumeShape, VolumeShapeName] = named(VolumeShape.DISK)
+    flow: Named[Flow, FlowName] = named(Flow.KEPLERIAN)
+    flags: Named[VolumeFlags, str] = named(VolumeFlags(0))
     #: DISK, JET: the inner edge; OUTFLOW: where matter is at rest. 0: the ISCO.
     inner_radius: float = 0.0
     #: Nothing is beyond it.
@@ -263,7 +313,7 @@ class HotSpot(_Struct):
     size: float = 0.8
     #: At scene time 0, radians.
     azimuth: float = 0.0
-    flags: HotSpotFlags = HotSpotFlags(0)
+    flags: Named[HotSpotFlags, str] = named(HotSpotFlags(0))
     #: Per M at the centre.
     absorption: float = 0.0
     #: Kelvin.
@@ -282,7 +332,7 @@ class Sky(_Struct):
     c_name: ClassVar[str] = "BhrSky"
     c_enums = {"flags": SkyFlags}
 
-    flags: SkyFlags = SkyFlags.STARS | SkyFlags.MILKY_WAY
+    flags: Named[SkyFlags, str] = named(SkyFlags.STARS | SkyFlags.MILKY_WAY)
     stars_brightness: float = 1.0
     #: A factor on the light of the Milky Way and of the map.
     map_brightness: float = 1.0
@@ -298,14 +348,14 @@ class Film(_Struct):
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
 
-    tone_map: ToneMap = ToneMap.ACES
+    tone_map: Named[ToneMap, ToneMapName] = named(ToneMap.ACES)
     #: Stops, -20 .. 20.
     exposure_ev: float = 0.0
     #: Glare, 0 .. 1: the share of the light that optics scatter.
     bloom: float = 0.25
     #: The full width at half maximum of a telescope's beam, in frame heights; 0: off.
     beam_fwhm: float = 0.0
-    colour_map: ColourMap = ColourMap.NONE
+    colour_map: Named[ColourMap, ColourMapName] = named(ColourMap.NONE)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -315,7 +365,7 @@ class Quality(_Struct):
     c_name: ClassVar[str] = "BhrQuality"
     c_enums = {"method": Method, "volume_resolution": VolumeResolution}
 
-    method: Method = Method.AUTO
+    method: Named[Method, MethodName] = named(Method.AUTO)
     #: 1 .. 256.
     samples_per_pixel: int = 1
     #: Steps of an integrated ray, 16 .. 100000.
@@ -329,7 +379,7 @@ class Quality(_Struct):
     #: For windows, which this package does not have.
     render_scale: float = 1.0
     #: HALF: a quarter of the rays where matter with depth is smooth.
-    volume_resolution: VolumeResolution = VolumeResolution.FULL
+    volume_resolution: Named[VolumeResolution, VolumeResolutionName] = named(VolumeResolution.FULL)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -23,18 +23,19 @@ import operator
 import time
 from collections.abc import Iterator, Sequence
 from types import TracebackType
-from typing import Any, ClassVar, TypeVar, Union
+from typing import Any, ClassVar, Literal, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._constants import Format, OutputKind, Projection, Status
-from ._context import Context
+from ._context import Context, output_of
 from ._ffi import ffi
 from ._frame import Frame
 from ._gate import Door
 from ._job import AnyJob
 from ._library import begin, check, lib
+from ._names import FormatLike, Named, OutputKindLike, ProjectionLike, ViewName, flags, member, named
 from ._structs import _Struct, new
 
 __all__ = [
@@ -87,6 +88,10 @@ class SemaphoreKind(enum.IntEnum):
     TIMELINE = 0
     #: Each signal is waited for exactly once, after it was submitted.
     BINARY = 1
+
+
+TargetKindName = Literal["image", "buffer"]
+SemaphoreKindName = Literal["timeline", "binary"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -146,7 +151,7 @@ class TargetInfo(_Struct):
     c_name: ClassVar[str] = "BhrTargetInfo"
     c_enums = {"kind": TargetKind}
 
-    kind: TargetKind = TargetKind.IMAGE
+    kind: Named[TargetKind, TargetKindName] = named(TargetKind.IMAGE)
     width: int = 0
     height: int = 0
     #: VkFormat of an image; 0 of a buffer.
@@ -175,6 +180,9 @@ _Self = TypeVar("_Self", bound="_Shared")
 
 class _Shared:
     """An object that both sides reach."""
+
+    # A slip in an attribute's name is an AttributeError.
+    __slots__ = ("__weakref__", "_door")
 
     _door: Door
 
@@ -209,11 +217,11 @@ class _Shared:
         return int(handle.fd)
 
 
-def _handle(handle: int, handle_type: HandleType) -> Any:
+def _handle(handle: int, handle_type: HandleType | str) -> Any:
     """A handle on its way into the library."""
     struct = ffi.new("BhrHandle *")
-    struct.type, struct.fd = HandleType(handle_type), -1
-    if handle_type == HandleType.HOST_POINTER:
+    struct.type, struct.fd = flags(HandleType, handle_type, "handle_type"), -1
+    if struct.type == HandleType.HOST_POINTER:
         struct.handle = ffi.cast("void *", handle)
     else:
         struct.fd = operator.index(handle)
@@ -223,16 +231,18 @@ def _handle(handle: int, handle_type: HandleType) -> Any:
 class Target(_Shared):
     """A picture on the GPU that both sides reach."""
 
+    __slots__ = ()
+
     def __init__(
         self,
         context: Context,
         width: int,
         height: int,
         *,
-        kind: TargetKind = TargetKind.IMAGE,
-        format: Format = Format.RGBA8_SRGB,
+        kind: TargetKind | TargetKindName = TargetKind.IMAGE,
+        format: FormatLike = Format.RGBA8_SRGB,
         transparent: bool = False,
-        handle_type: HandleType = HandleType(0),
+        handle_type: HandleType | str = HandleType(0),
         layout: int = 0,
         row_stride: int = 0,
     ) -> None:
@@ -251,10 +261,10 @@ class Target(_Shared):
         height: int,
         memory: TargetInfo,
         handle: int,
-        handle_type: HandleType = HandleType.OPAQUE_FD,
+        handle_type: HandleType | str = HandleType.OPAQUE_FD,
         *,
-        kind: TargetKind = TargetKind.IMAGE,
-        format: Format = Format.RGBA8_SRGB,
+        kind: TargetKind | TargetKindName = TargetKind.IMAGE,
+        format: FormatLike = Format.RGBA8_SRGB,
         transparent: bool = False,
         layout: int = 0,
         row_stride: int = 0,
@@ -286,49 +296,53 @@ class Target(_Shared):
 def _options(
     width: int,
     height: int,
-    kind: TargetKind,
-    format: Format,
+    kind: TargetKind | TargetKindName,
+    format: FormatLike,
     transparent: bool,
-    handle_type: HandleType,
+    handle_type: HandleType | str,
     layout: int,
     row_stride: int,
 ) -> Any:
     options = ffi.new("BhrTargetOptions *")
     check(lib.bhr_target_options_init(options, ffi.sizeof("BhrTargetOptions")))
-    options.kind, options.format = TargetKind(kind), Format(format)
+    options.kind, options.format = member(TargetKind, kind, "kind"), member(Format, format, "format")
     options.width, options.height = width, height
     options.flags = lib.BHR_IMAGE_TRANSPARENT if transparent else 0
-    options.handle_type, options.layout, options.row_stride = HandleType(handle_type), layout, row_stride
+    options.handle_type = flags(HandleType, handle_type, "handle_type")
+    options.layout, options.row_stride = layout, row_stride
     return options
 
 
 class Semaphore(_Shared):
     """A semaphore that both sides reach: of value 0, or not signalled."""
 
+    __slots__ = ()
+
     def __init__(
         self,
         context: Context,
-        kind: SemaphoreKind = SemaphoreKind.TIMELINE,
+        kind: SemaphoreKind | SemaphoreKindName = SemaphoreKind.TIMELINE,
         *,
-        handle_type: HandleType = HandleType(0),
+        handle_type: HandleType | str = HandleType(0),
     ) -> None:
         """Makes one that is exported by the one kind of handle that `handle_type` says; 0: by none."""
+        given = member(SemaphoreKind, kind, "kind"), flags(HandleType, handle_type, "handle_type")
         door, made = Door("semaphore", lib.bhr_semaphore_destroy), ffi.new("BhrSemaphore **")
-        self._open(door, context, made, lib.bhr_semaphore_create, SemaphoreKind(kind), HandleType(handle_type))
+        self._open(door, context, made, lib.bhr_semaphore_create, *given)
 
     @classmethod
     def from_handle(
         cls,
         context: Context,
         handle: int,
-        handle_type: HandleType = HandleType.OPAQUE_FD,
+        handle_type: HandleType | str = HandleType.OPAQUE_FD,
         *,
-        kind: SemaphoreKind = SemaphoreKind.TIMELINE,
+        kind: SemaphoreKind | SemaphoreKindName = SemaphoreKind.TIMELINE,
     ) -> Semaphore:
         """Makes one of the program's semaphores, which is of this kind. A file descriptor is the library's afterwards,
         and the caller's after an error."""
         self = cls.__new__(cls)
-        given = SemaphoreKind(kind), _handle(handle, handle_type)
+        given = member(SemaphoreKind, kind, "kind"), _handle(handle, handle_type)
         door, made = Door("semaphore", lib.bhr_semaphore_destroy), ffi.new("BhrSemaphore **")
         self._open(door, context, made, lib.bhr_semaphore_import, *given)
         return self
@@ -410,7 +424,7 @@ def render(
 
 def render_outputs(
     context: Context,
-    outputs: Sequence[tuple[OutputKind | tuple[OutputKind, int], Target | Frame | npt.NDArray[Any]]],
+    outputs: Sequence[tuple[OutputKindLike | tuple[OutputKindLike, int | ViewName], Target | Frame | npt.NDArray[Any]]],
     *,
     transparent: bool = False,
     waits: Sequence[SemaphoreValue] = (),
@@ -426,9 +440,9 @@ def render_outputs(
     images, places = [], []
     with contextlib.ExitStack() as inside:
         for (output, place), c in zip(outputs, array):
-            kind, index = output if isinstance(output, tuple) else (output, 0)
+            kind, index = output_of(output)
             c.struct_size = ffi.sizeof("BhrOutput")
-            c.kind, c.index = OutputKind(kind), index
+            c.kind, c.index = kind, index
             if isinstance(place, Target):
                 c.target = inside.enter_context(place._door)
             else:
@@ -453,11 +467,11 @@ def set_occluder(context: Context, target: Target | None, *, lensed: bool = Fals
         context._targets["occluder"] = target
 
 
-def set_sky(context: Context, target: Target | None, layout: Projection = Projection.EQUIRECT) -> None:
+def set_sky(context: Context, target: Target | None, layout: ProjectionLike = Projection.EQUIRECT) -> None:
     """Context.set_sky_map with a picture on the GPU, in a target of RGBA16F or RGBA32F, which each frame with
     SkyFlags.MAP reads anew, after its waits. `layout`: EQUIRECT, or CUBE, six faces side by side. None: none. The
     context keeps the target, which must not be closed before another is set."""
-    layout = Projection(layout)
+    layout = member(Projection, layout, "layout")
     with _door_of(target) as pointer, context._gate as gate:
         if layout == Projection.EQUIRECT:
             check(lib.bhr_set_sky_target(gate, pointer))
