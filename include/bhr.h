@@ -107,6 +107,14 @@
  *   callback must not wait for another thread's call on the same context. No callback runs after the destroy call of
  *   its context has returned.
  *
+ *   During a call, floating point on its thread has the default rounding, traps and treatment of subnormal numbers,
+ *   whatever the host has set; after it, and in callbacks, the host's settings and flags are as they were. A thread is
+ *   not cancelled (pthread_cancel, of deferred type) inside a call, nor in a callback from one: the request waits.
+ *
+ *   A call needs 64 KiB of stack on Linux (x86, x86-64, AArch64), also on fibers: where less than 512 KiB are known to
+ *   be left, it continues on a stack of bhr's, and its callbacks run on the host's. Elsewhere it needs 512 KiB, because
+ *   of drivers.
+ *
  * Memory
  *   Large memory, of more than some tens of kilobytes (frames, maps, tables, rays, star fields), is asked for in such a
  *   way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a megabyte would
@@ -202,9 +210,9 @@ const char *bhr_status_name(BhrStatus status);
 typedef int32_t BhrLogLevel;
 
 #define BHR_LOG_OFF 0   /**< Nothing. */
-#define BHR_LOG_ERROR 1 /**< Every failed call, and errors of the graphics stack. */
+#define BHR_LOG_ERROR 1 /**< Every failed call, but for cancels, and errors of the graphics stack. */
 #define BHR_LOG_WARN 2  /**< Also trouble that failed no call, such as an adapter passed over. The default. */
-#define BHR_LOG_INFO 3  /**< Also the adapter that was chosen, and why. */
+#define BHR_LOG_INFO 3  /**< Also cancels, and the adapter that was chosen, and why. */
 #define BHR_LOG_DEBUG 4 /**< Also what the graphics stack (wgpu) reports about itself. */
 #define BHR_LOG_TRACE 5 /**< Everything: slow. */
 
@@ -1748,8 +1756,10 @@ BHR_NODISCARD BhrStatus bhr_render_image_async(BhrContext *context, const BhrIma
 /**
  * Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
  * it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
- * 1, and 0 after a failure. Meanwhile the progress callback that the context had when the job was begun is called,
- * on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
+ * 1, and 0 after a failure: 0 until its turn has come; then by tiles, of which a small frame is one. A tile counts
+ * half once the GPU has it, and wholly once its pixels are there; frames on the CPU and with GL, and those of
+ * bhr_render_outputs, begin at 0.01. Meanwhile the progress callback that the context had when the job was begun is
+ * called, on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
  * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
  * bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
  */

@@ -42,6 +42,8 @@ struct Shared {
     images: Mutex<Vec<ImageMut<'static>>>,
     /// The bits of the part that is done, an f64 in 0 .. 1.
     fraction: AtomicU64,
+    /// Steps that were submitted, and once more those that are done.
+    half_steps: AtomicU64,
 }
 
 impl Job {
@@ -132,9 +134,31 @@ impl Shared {
     }
 
     fn report(&self, fraction: f64) {
+        self.report_with(|| fraction);
+    }
+
+    fn report_with(&self, fraction: impl FnOnce() -> f64) {
         // The lock is held, or a waiter could miss this between looking and sleeping.
-        let _outcome = lock(&self.outcome);
-        self.fraction.store(fraction.to_bits(), Ordering::Relaxed);
+        let outcome = lock(&self.outcome);
+        // The outcome has the last word, whatever another thread had begun to say.
+        if outcome.is_none() {
+            self.fraction.store(fraction().to_bits(), Ordering::Relaxed);
+            self.changed.notify_all();
+        }
+    }
+
+    /// One of `count` steps was submitted, or is done. A frame of one step is at 1/2 while it is made.
+    fn report_half_step(&self, count: u64) {
+        self.report_with(|| (self.half_steps.fetch_add(1, Ordering::Relaxed) + 1) as f64 / (2 * count) as f64);
+    }
+
+    /// The job has ended, unless it had before.
+    fn end(&self, ended: Result<FrameStats>) {
+        let mut outcome = lock(&self.outcome);
+        if outcome.is_none() {
+            self.fraction.store(f64::from(u8::from(ended.is_ok())).to_bits(), Ordering::Relaxed);
+            *outcome = Some(ended);
+        }
         self.changed.notify_all();
     }
 }
@@ -231,8 +255,7 @@ impl JobRequest {
             }
             error
         });
-        self.shared.fraction.store(f64::from(u8::from(outcome.is_ok())).to_bits(), Ordering::Relaxed);
-        self.end(outcome);
+        self.shared.end(outcome);
     }
 
     /// Lets go of what the host shares: whoever has seen the job's end may destroy it. Whether an image that went with
@@ -246,16 +269,11 @@ impl JobRequest {
         }
         self.shared.leave_images()
     }
-
-    fn end(&self, outcome: Result<FrameStats>) {
-        lock(&self.shared.outcome).get_or_insert(outcome);
-        self.shared.changed.notify_all();
-    }
 }
 
 impl Drop for JobRequest {
     fn drop(&mut self) {
         self.let_go();
-        self.end(Err(Error::internal("a thread that renders in the background failed")));
+        self.shared.end(Err(Error::internal("a thread that renders in the background failed")));
     }
 }

@@ -37,6 +37,7 @@ pub mod scene;
 pub mod sky;
 pub mod surface;
 mod thread_scope;
+mod thread_state;
 pub mod tracer;
 mod tracers;
 pub mod window;

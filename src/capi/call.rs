@@ -9,6 +9,7 @@ use super::pointer::is_null;
 use super::state::State;
 use super::status::{BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
+use crate::thread_state::Call;
 use parking_lot::{Mutex, MutexGuard};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,6 +36,7 @@ pub(super) unsafe fn on_context<T: Success>(
     context: *const impl Locked,
     body: impl FnOnce(&mut State) -> Result<T>,
 ) -> BhrStatus {
+    let _call = Call::enter();
     // SAFETY: NULL or alive, by this function's contract.
     let context = unsafe { context.as_ref() };
     if let Err(error) = refuse_in_callback() {

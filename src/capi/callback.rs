@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Counts, for each thread, the calls and the callbacks of the host's that it is inside of.
 
+use crate::thread_state;
 use std::cell::Cell;
 use std::thread::LocalKey;
 
@@ -52,5 +53,10 @@ impl InsideCallback {
 
     pub(super) fn progress() -> Self {
         Self { _any: Depth::enter(&CALLBACKS), _log: None }
+    }
+
+    /// Runs the callback, which finds the state of its thread as the host has it.
+    pub(super) fn run<R>(self, callback: impl FnOnce() -> R) -> R {
+        thread_state::call_host(callback)
     }
 }

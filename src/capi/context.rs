@@ -4,12 +4,11 @@
 
 use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
 use super::call::{Locked, on_context};
-use super::callback::in_callback;
-use super::entry::{anywhere, finish, outside_callbacks};
+use super::entry::{anywhere, destroy, finish, outside_callbacks};
 use super::gate::{AT_THE_END, Gate};
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
 use super::message::{LastMessage, copy_last};
-use super::panic::guarded;
+use super::panic::guarded_always;
 use super::pointer::{Out, check_flags};
 use super::state::State;
 use super::status::BhrStatus;
@@ -339,18 +338,11 @@ pub unsafe extern "C" fn bhr_context_error_message(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";
-    if context.is_null() {
-        return;
-    }
-    if in_callback() {
-        finish::<()>(
-            NAME,
-            Err(Error::state("ignored inside a log or progress callback; call it after the callback returned")),
-        );
-        return;
-    }
     // SAFETY: bhr_context_create made it with Box::into_raw, and the host destroys it once.
-    let context = unsafe { Box::from_raw(context) };
+    unsafe { destroy(NAME, context, |context| end(NAME, context)) }
+}
+
+fn end(function: &str, context: Box<BhrContext>) {
     let scope = log::Scope::enter(context.sink());
     let ending = process_end::is_here();
     // A running call holds the lock. In the end of the process it may wait for what does not come any more.
@@ -364,11 +356,11 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     if uses_driver && ending {
         process_end::keep(state);
     } else {
-        let result = guarded(|| {
+        let result = guarded_always(|| {
             drop(state);
             Ok(())
         });
-        finish(NAME, result);
+        finish(function, result);
     }
     progress_gate.close();
     drop(scope);

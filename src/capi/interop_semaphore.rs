@@ -2,9 +2,8 @@
 //! BhrSemaphore: who waits for whom on the GPU. One `Semaphore`, shared with its context, which may go first.
 
 use super::call::{keep, on_context};
-use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{SuccessStatus, finish, give_back, outside_callbacks};
+use super::entry::{SuccessStatus, destroy, give_back, outside_callbacks};
 use super::interop_info::{BHR_HANDLE_HOST_POINTER, BHR_HANDLE_OPAQUE_FD, BhrHandleType};
 use super::interop_target::{BhrHandle, NO_HANDLE, close, read_handle};
 use super::log::{self, Sink};
@@ -14,6 +13,7 @@ use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
 use crate::gpu::{NOT_RUN, SemaphoreKind, SemaphoreOrigin};
 use crate::interop::Semaphore;
+use crate::thread_state::Call;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -138,6 +138,7 @@ pub unsafe extern "C" fn bhr_semaphore_import(
     handle: *const BhrHandle,
     out_semaphore: *mut *mut BhrSemaphore,
 ) -> BhrStatus {
+    let _call = Call::enter();
     let mut taken = None;
     // SAFETY: NULL or valid, by the header's conventions.
     let status = unsafe {
@@ -203,16 +204,11 @@ pub unsafe extern "C" fn bhr_semaphore_signal(semaphore: *mut BhrSemaphore, valu
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_destroy(semaphore: *mut BhrSemaphore) {
     const NAME: &str = "bhr_semaphore_destroy";
-    if semaphore.is_null() {
-        return;
-    }
-    if in_callback() {
-        let ignored = Error::state("ignored inside a callback; call it after the callback returned");
-        finish::<()>(NAME, Err(ignored));
-        return;
-    }
+    let end = |owned: Box<BhrSemaphore>| {
+        let BhrSemaphore { semaphore, sink, .. } = *owned;
+        let _scope = log::Scope::enter(sink);
+        give_back(NAME, semaphore, |semaphore| semaphore.end("it was destroyed"));
+    };
     // SAFETY: this file made it with Box::into_raw, and the host destroys it once.
-    let BhrSemaphore { semaphore, sink, .. } = *unsafe { Box::from_raw(semaphore) };
-    let _scope = log::Scope::enter(sink);
-    give_back(NAME, semaphore, |semaphore| semaphore.end("it was destroyed"));
+    unsafe { destroy(NAME, semaphore, end) }
 }

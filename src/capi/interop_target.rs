@@ -3,9 +3,8 @@
 //! first.
 
 use super::call::{keep, on_context};
-use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{anywhere, finish, give_back, outside_callbacks};
+use super::entry::{anywhere, destroy, give_back, outside_callbacks};
 use super::image::{BHR_FORMAT_RGBA8_SRGB, BHR_IMAGE_TRANSPARENT, BhrFormat, format};
 use super::interop_info::{BHR_HANDLE_HOST_POINTER, BHR_HANDLE_OPAQUE_FD, BhrHandleType};
 use super::log::{self, Sink};
@@ -17,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{MemoryInfo, NOT_RUN, TargetOrigin, TargetShape};
 use crate::image::MAX_SIDE;
 use crate::interop::Target;
+use crate::thread_state::Call;
 use bytemuck::Zeroable;
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -313,6 +313,7 @@ pub unsafe extern "C" fn bhr_target_import(
     handle: *const BhrHandle,
     out_target: *mut *mut BhrTarget,
 ) -> BhrStatus {
+    let _call = Call::enter();
     let mut taken = None;
     // SAFETY: NULL or valid, by the header's conventions.
     let status = unsafe {
@@ -441,16 +442,11 @@ pub unsafe extern "C" fn bhr_target_vulkan(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_destroy(target: *mut BhrTarget) {
     const NAME: &str = "bhr_target_destroy";
-    if target.is_null() {
-        return;
-    }
-    if in_callback() {
-        let ignored = Error::state("ignored inside a callback; call it after the callback returned");
-        finish::<()>(NAME, Err(ignored));
-        return;
-    }
+    let end = |owned: Box<BhrTarget>| {
+        let BhrTarget { target, sink, .. } = *owned;
+        let _scope = log::Scope::enter(sink);
+        give_back(NAME, target, |target| target.end("it was destroyed"));
+    };
     // SAFETY: this file made it with Box::into_raw, and the host destroys it once.
-    let BhrTarget { target, sink, .. } = *unsafe { Box::from_raw(target) };
-    let _scope = log::Scope::enter(sink);
-    give_back(NAME, target, |target| target.end("it was destroyed"));
+    unsafe { destroy(NAME, target, end) }
 }

@@ -12,6 +12,7 @@ use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::gpu::{self, HostVulkan, QueueLock, Release, ReleaseGuard, SemaphoreOrigin, TargetOrigin};
+use crate::thread_state::Call;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
@@ -144,9 +145,8 @@ struct HostCall {
 
 impl HostCall {
     fn run(&self) {
-        let _inside = InsideCallback::progress();
         // SAFETY: the host gave this function with this pointer.
-        unsafe { (self.function)(self.user.0) }
+        InsideCallback::progress().run(|| unsafe { (self.function)(self.user.0) });
     }
 }
 
@@ -314,6 +314,7 @@ pub unsafe extern "C" fn bhr_target_wrap_vulkan(
     release_user: *mut c_void,
     out_target: *mut *mut BhrTarget,
 ) -> BhrStatus {
+    let _call = Call::enter();
     let release = release_of(release, release_user);
     // SAFETY: NULL or valid, by the header's conventions.
     let status = unsafe {

@@ -2,21 +2,21 @@
 //! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
 use super::call::{break_if_internal, keep, on_context};
-use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{self, SuccessStatus, finish, outside_callbacks};
+use super::entry::{self, SuccessStatus, destroy, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
 use super::message::{LastMessage, copy_last};
-use super::panic::guarded;
+use super::panic::guarded_always;
 use super::pointer::{Out, is_null};
 use super::progress::{Callback, Report};
 use super::state::State;
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::process_end;
 use crate::job::Job;
+use crate::thread_state::Call;
 use crate::tracer::Backend;
 use std::ffi::c_char;
 use std::sync::Arc;
@@ -139,8 +139,10 @@ pub unsafe extern "C" fn bhr_render_image_async(
 
 /// Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
 /// it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
-/// 1, and 0 after a failure. Meanwhile the progress callback that the context had when the job was begun is called,
-/// on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
+/// 1, and 0 after a failure: 0 until its turn has come; then by tiles, of which a small frame is one. A tile counts
+/// half once the GPU has it, and wholly once its pixels are there; frames on the CPU and with GL, and those of
+/// bhr_render_outputs, begin at 0.01. Meanwhile the progress callback that the context had when the job was begun is
+/// called, on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
 /// bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
 /// bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
@@ -174,10 +176,11 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
 /// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
 /// lost.
 fn cancel(function: &str, job: &BhrJob) {
+    let _call = Call::enter();
     if job.uses_driver && process_end::is_here() {
         return;
     }
-    let cancelled = guarded(|| {
+    let cancelled = guarded_always(|| {
         job.job.cancel();
         Ok(())
     });
@@ -190,25 +193,19 @@ fn cancel(function: &str, job: &BhrJob) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";
-    if job.is_null() {
-        return;
-    }
-    if in_callback() {
-        let ignored = Error::state("ignored inside a log or progress callback; call it after the callback returned");
-        finish::<()>(NAME, Err(ignored));
-        return;
-    }
+    let end = |job: Box<BhrJob>| {
+        if job.uses_driver && process_end::is_here() {
+            // Its thread is held up, and writes nothing while the process ends within the time that `keep` states.
+            return process_end::keep(job);
+        }
+        if !job.writes_memory {
+            job.job.leave_images();
+            return;
+        }
+        cancel(NAME, &job);
+        // Nobody is left to hear of the job's own failure.
+        let _ = job.job.wait(None, &mut |_| true);
+    };
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
-    let job = unsafe { Box::from_raw(job) };
-    if job.uses_driver && process_end::is_here() {
-        // Its thread is held up, and writes nothing while the process ends within the time that `keep` states.
-        return process_end::keep(job);
-    }
-    if !job.writes_memory {
-        job.job.leave_images();
-        return;
-    }
-    cancel(NAME, &job);
-    // Nobody is left to hear of the job's own failure.
-    let _ = job.job.wait(None, &mut |_| true);
+    unsafe { destroy(NAME, job, end) }
 }

@@ -18,11 +18,11 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 pub type BhrLogLevel = i32;
 /// Nothing.
 pub const BHR_LOG_OFF: BhrLogLevel = 0;
-/// Every failed call, and errors of the graphics stack.
+/// Every failed call, but for cancels, and errors of the graphics stack.
 pub const BHR_LOG_ERROR: BhrLogLevel = 1;
 /// Also trouble that failed no call, such as an adapter passed over. The default.
 pub const BHR_LOG_WARN: BhrLogLevel = 2;
-/// Also the adapter that was chosen, and why.
+/// Also cancels, and the adapter that was chosen, and why.
 pub const BHR_LOG_INFO: BhrLogLevel = 3;
 /// Also what the graphics stack (wgpu) reports about itself.
 pub const BHR_LOG_DEBUG: BhrLogLevel = 4;
@@ -81,9 +81,9 @@ impl Sink {
             return;
         }
         let Some(_open) = self.gate.enter() else { return };
-        let _inside = InsideCallback::log();
         // SAFETY: the host gave this function with this pointer, and the gate is open: the context still lives.
-        unsafe { (self.function)(self.user.0, level as BhrLogLevel, message.as_ptr()) };
+        let call = || unsafe { (self.function)(self.user.0, level as BhrLogLevel, message.as_ptr()) };
+        InsideCallback::log().run(call);
     }
 }
 

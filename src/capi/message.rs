@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The message of a thread's last failed call, and those of a context's and a job's, which any thread may ask for.
 
+use crate::thread_state::Call;
 use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::ffi::c_char;
@@ -69,6 +70,7 @@ impl LastMessage {
 /// # Safety
 /// `buffer` is NULL or has `size` writable bytes.
 pub(super) unsafe fn copy_last(message: Option<&LastMessage>, buffer: *mut c_char, size: usize) -> usize {
+    let _call = Call::enter();
     // SAFETY: this function's contract.
     unsafe {
         copy_text(b"", buffer, size);

@@ -2,25 +2,44 @@
 //! The whole panic policy: a panic inside a call becomes an error of that call, and is not printed.
 
 use super::callback::{CALLS, Depth, count};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::gpu;
+use crate::thread_state::on_enough_stack;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::{Mutex, Once, OnceLock, PoisonError};
 
-/// Runs `body`; a panic becomes an `Internal` error that says where.
+/// Runs `body`, with as much stack as anything in bhr needs; a panic becomes an `Internal` error that says where.
+/// Errors: those of `body`; OUT_OF_MEMORY where there is no memory for a stack, and `body` did not run.
 pub(super) fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
+    let refused =
+        |_| Err(Error::new(ErrorKind::OutOfMemory, "this thread has little stack left, and no memory for more"));
+    on_enough_stack(|| caught(body)).unwrap_or_else(refused)
+}
+
+/// [`guarded`] for work that must be done: where there is no memory for a stack, on what this one has left.
+pub(super) fn guarded_always<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
+    on_enough_stack(|| caught(body)).unwrap_or_else(|work| work())
+}
+
+fn caught<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     static HOOK: Once = Once::new();
     if !std::thread::panicking() {
         HOOK.call_once(silence_panics);
     }
     let _call = Depth::enter(&CALLS);
     // This is unwind safe: whoever could see what the panic left half done is refused from then on.
-    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
+    catch_unwind(AssertUnwindSafe(|| apart(body))).unwrap_or_else(|payload| {
         // Dropping an unknown payload may panic again.
         std::mem::forget(payload);
         let place = last_panic().take().unwrap_or_else(|| "an unknown place".into());
         Err(Error::internal(format!("a bug in bhr was caught: panic at {place}")))
     })
+}
+
+/// Keeps the compiler, which does not know that a `Call` changes how floating point rounds, from counting earlier.
+#[inline(never)]
+fn apart<T>(body: impl FnOnce() -> T) -> T {
+    body()
 }
 
 static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);

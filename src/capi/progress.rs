@@ -31,9 +31,9 @@ impl Report {
         let Some(callback) = self.callback else {
             return true;
         };
-        let _inside = InsideCallback::progress();
+        let told = self.told;
         // SAFETY: the host gave this function with this pointer for this context's frames.
-        unsafe { (callback.function)(callback.user.0, self.told) != 0 }
+        InsideCallback::progress().run(|| unsafe { (callback.function)(callback.user.0, told) }) != 0
     }
 
     /// The last word, if it has not been said.

@@ -2,9 +2,8 @@
 //! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
 use super::call::{keep, on_context};
-use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{SuccessStatus, finish, give_back, outside_callbacks};
+use super::entry::{SuccessStatus, destroy, give_back, outside_callbacks};
 use super::log::{self, Sink};
 use super::message::LastMessage;
 use super::pointer::{Out, is_null, unknown};
@@ -157,16 +156,11 @@ pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
     const NAME: &str = "bhr_surface_destroy";
-    if surface.is_null() {
-        return;
-    }
-    if in_callback() {
-        let ignored = Error::state("ignored inside a log or progress callback; call it after the callback returned");
-        finish::<()>(NAME, Err(ignored));
-        return;
-    }
+    let end = |owned: Box<BhrSurface>| {
+        let BhrSurface { surface, sink, .. } = *owned;
+        let _scope = log::Scope::enter(sink);
+        give_back(NAME, surface, |surface| surface.end("it was destroyed"));
+    };
     // SAFETY: bhr_surface_create made it with Box::into_raw, and the host destroys it once.
-    let BhrSurface { surface, sink, .. } = *unsafe { Box::from_raw(surface) };
-    let _scope = log::Scope::enter(sink);
-    give_back(NAME, surface, |surface| surface.end("it was destroyed"));
+    unsafe { destroy(NAME, surface, end) }
 }

@@ -19,6 +19,7 @@ use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Hit, Ray, Scene, Transfer};
 use crate::sky::StarIndex;
+use crate::thread_state::begin_own_thread;
 use crate::tracer::{AdapterInfo, Backend};
 use std::sync::Arc;
 use tables::LensCache;
@@ -64,6 +65,7 @@ impl CpuTracer {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|i| format!("bhr-cpu-{i}"))
+            .start_handler(|_| begin_own_thread())
             .build()
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
         // Once all of them run, they have what threads take at their start, which is not ours to refuse.

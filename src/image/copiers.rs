@@ -3,6 +3,7 @@
 //! memory, a PCIe 5 bus carries 50. Knows no images and touches no memory itself.
 
 use crate::allocate::{self, THREAD_ROOM};
+use crate::thread_state::begin_own_thread;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -51,7 +52,7 @@ impl Copiers {
             let room = allocate::check_room(self.threads * THREAD_ROOM, "threads to copy frames with");
             room.inspect_err(|error| log::warn!("{error}")).ok()?;
             let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
-            let built = builder.thread_name(|i| format!("bhr-copy-{i}")).build();
+            let built = builder.thread_name(|i| format!("bhr-copy-{i}")).start_handler(|_| begin_own_thread()).build();
             let pool = built.inspect_err(|error| log::warn!("no threads to copy frames with: {error}")).ok()?;
             // Once all threads run, they have the memory that a thread takes at its start, which bhr cannot refuse.
             pool.broadcast(|_| ());

@@ -10,6 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, OutputTo, Submission, process_end};
 use crate::interop;
 use crate::thread_scope::{self, ThreadScope};
+use crate::thread_state::begin_own_thread;
 use crate::tracer::{FrameStats, Tile};
 use crate::tracers::Tracer;
 use parking_lot::{ArcMutexGuard, RawMutex};
@@ -135,6 +136,7 @@ impl Worker {
         let begins = begun.clone();
         let body = move || {
             begins.wait();
+            begin_own_thread();
             process_end::own_thread();
             let _scope = scope();
             // Unwind safe: after a panic nothing is taken any more, and what was taken ends as it is dropped.
@@ -407,12 +409,16 @@ fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(Begu
     Ok(begun)
 }
 
+/// The part that counts as done of a frame made in one piece, once its turn has come.
+const BEGUN: f64 = 0.01;
+
 /// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs and strips are
 /// several frames.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
     let (scene, shared) = (&job_request.scene, job_request.shared.clone());
+    shared.report(BEGUN);
     let mut progress = |fraction: f64| {
-        shared.report(fraction);
+        shared.report(BEGUN + (1.0 - BEGUN) * fraction);
         !shared.cancelled.load(Ordering::Relaxed)
     };
     let rendered = match &mut job_request.target {
@@ -471,6 +477,7 @@ impl FrameSubmitter {
                 return Err(Error::internal("a frame of the GPU on another tracer"));
             };
             if let Some(step) = tracer.submit(&mut self.frame)? {
+                shared.report_half_step(self.frame.count());
                 queue.send(Event::Step(Box::new(step)));
             }
         }
@@ -553,7 +560,7 @@ impl RunningFrame {
         };
         step.finish_parts(&self.device, &mut self.stats, &mut sink)?;
         self.done += 1;
-        self.job_request.shared.report(self.done as f64 / self.count as f64);
+        self.job_request.shared.report_half_step(self.count);
         Ok(())
     }
 }

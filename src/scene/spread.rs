@@ -2,6 +2,7 @@
 //! Work on many things of which each is done by itself, on threads of the call's own.
 
 use crate::allocate::{THREAD_ROOM, check_room};
+use crate::thread_state::begin_own_thread;
 use parking_lot::Mutex;
 
 /// How work is spread.
@@ -31,12 +32,16 @@ impl Spread {
                 }
             }
         };
+        let own = || {
+            begin_own_thread();
+            work();
+        };
         std::thread::scope(|scope| {
             for i in 1..threads {
                 let thread = std::thread::Builder::new().name(format!("{}-{i}", self.name));
                 // Without memory for a thread, or without a thread, there are fewer: this one is enough.
                 let room = check_room(THREAD_ROOM, "a thread that shares work");
-                if room.is_err() || thread.spawn_scoped(scope, work).is_err() {
+                if room.is_err() || thread.spawn_scoped(scope, own).is_err() {
                     break;
                 }
             }

@@ -10,6 +10,7 @@
 use crate::allocate::{THREAD_ROOM, check_room, filled};
 use crate::error::{Error, Result};
 use crate::image::{ImageRef, PixelFormat, file::srgb_to_linear};
+use crate::thread_state::begin_own_thread;
 use parking_lot::Mutex;
 use std::f64::consts::PI;
 
@@ -124,12 +125,16 @@ impl Level {
                 }
             }
         };
+        let own = || {
+            begin_own_thread();
+            drop(work());
+        };
         let made = std::thread::scope(|scope| {
             for i in 1..threads {
                 let thread = std::thread::Builder::new().name(format!("bhr-sky-{i}"));
                 // Without memory for a thread, or without a thread, there are fewer: this one is enough.
                 let room = check_room(THREAD_ROOM, "a thread that makes a sky map");
-                if room.is_err() || thread.spawn_scoped(scope, || drop(work())).is_err() {
+                if room.is_err() || thread.spawn_scoped(scope, own).is_err() {
                     break;
                 }
             }

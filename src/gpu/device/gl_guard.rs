@@ -15,6 +15,7 @@ pub use none::ContextGuard;
 #[cfg(all(feature = "gl", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod egl {
     use crate::gpu::device::driver_lock;
+    use crate::thread_state::begin_own_thread;
     use khronos_egl::{self as egl, DynamicInstance, EGL1_4};
     use std::sync::mpsc;
     use std::thread::{self, JoinHandle};
@@ -39,7 +40,10 @@ mod egl {
             drop(hal);
             let (tell, told) = mpsc::channel();
             let (end, ended) = mpsc::channel::<()>();
-            let run = move || hold(display, shared, &tell, &ended);
+            let run = move || {
+                begin_own_thread();
+                hold(display, shared, &tell, &ended);
+            };
             let thread = thread::Builder::new().name("bhr-gl-guard".into()).spawn(run).ok()?;
             if let Ok(Err(error)) = told.recv() {
                 log::info!("GL goes without a guard against the end of its display: {error}");

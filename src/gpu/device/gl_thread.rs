@@ -13,6 +13,7 @@ use super::gl_guard::ContextGuard;
 use super::process_end;
 use crate::error::{Error, ErrorKind, Result, panic_text};
 use crate::thread_scope;
+use crate::thread_state::begin_own_thread;
 use crate::tracer::Progress;
 use parking_lot::Mutex;
 use std::cell::RefCell;
@@ -101,6 +102,7 @@ impl GlThread {
     pub fn start() -> Result<Arc<Self>> {
         let (channel, work) = mpsc::channel::<Work<'static>>();
         let run = move || {
+            begin_own_thread();
             process_end::own_thread();
             work.into_iter().for_each(|work| work());
         };

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::gpu::device::process_end;
 use crate::gpu::device::wgpu_device::Device;
 use crate::thread_scope;
+use crate::thread_state::begin_own_thread;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -152,6 +153,7 @@ impl Compilers {
             let (left, cache, device, scope) = (left.clone(), cache.clone(), device.clone(), scope.clone());
             // A machine that has no more threads makes do with fewer.
             let work = move || {
+                begin_own_thread();
                 process_end::own_thread();
                 let _scope = scope();
                 while compile_next(&left, &cache, &device) {}
@@ -169,6 +171,7 @@ impl Compilers {
         }
         let scope = thread_scope::of_caller();
         let work = move || {
+            begin_own_thread();
             process_end::own_thread();
             let _scope = scope();
             lower_priority();
@@ -195,6 +198,7 @@ impl Compilers {
             let (shared, cache, device) = (self.queue.clone(), cache.clone(), device.clone());
             let scope = thread_scope::of_caller();
             let work = move || {
+                begin_own_thread();
                 process_end::own_thread();
                 let _scope = scope();
                 compile_in_background(&shared, &cache, &device);

@@ -4,6 +4,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::memory::{MAX_SIDE, PixelFormat};
+use crate::thread_state::begin_own_thread;
 use std::fmt::Display;
 
 /// The most bytes of pixels that a file may become: those of a 16384 x 16384 RGBA32F image.
@@ -88,6 +89,7 @@ pub(super) fn on_own_thread<T: Send>(work: impl FnOnce() -> Result<T> + Send) ->
     probe(THREAD_BYTES)?;
     std::thread::scope(|scope| {
         let body = || {
+            begin_own_thread();
             ignore_file_size_signal();
             probe(SMALL_BYTES)?;
             work()
