@@ -38,8 +38,9 @@ pub use frame::passes::outputs_beside::OutputTo;
 pub use frame::plan::setup::FrameTarget;
 pub use frame::resources::occluder::check_occluder;
 pub use frame::resources::sky_target::check_sky;
-pub use frame::submission::begun_frame::{BegunFrame, ExtraCommands, Handed};
-pub use frame::submission::submit::Submission;
+pub use frame::submission::begun_frame::{BegunFrame, ExtraCommands};
+pub use frame::submission::handed::Handed;
+pub use frame::submission::under_way::Submission;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;
 #[doc(hidden)]

@@ -4,6 +4,7 @@
 use super::bloom_textures::BloomBuffers;
 use super::cached_uniform::CachedUniform;
 use super::edge_list::EdgeList;
+use super::staging_layout::MOST_PASSES;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::gpu::device::buffer::{Buffer, uniform_stride};
@@ -17,14 +18,7 @@ use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::{FrameUniform, PassUniform};
 use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
 use crate::gpu::lens::records::{RecordStore, step_sum};
-use crate::tracer::PASSES;
 use wgpu::BufferUsages as Usage;
-
-/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
-pub const MOST_PASSES: usize = PASSES + 1;
-
-/// Where the pixels begin in a submission's staging buffer, behind ticks and steps.
-pub const PIXELS: u64 = 256;
 
 /// Buffers that frames of one size share; they grow and stay.
 #[derive(Default)]

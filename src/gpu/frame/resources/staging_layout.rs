@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device;
+//! between them the steps of the picture's rays and those of the outputs'.
+
+use crate::gpu::device::timer;
+use crate::gpu::lens::records::STEP_SUM;
+use crate::tracer::PASSES;
+
+/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
+pub const MOST_PASSES: usize = PASSES + 1;
+
+pub const TICKS: u64 = 0;
+pub const STEPS: [u64; 2] = [64, 64 + STEP_SUM];
+pub const STEPS_END: u64 = STEPS[1] + STEP_SUM;
+pub const PIXELS: u64 = 256;
+const _: () = assert!(TICKS + MOST_PASSES as u64 * timer::PASS_BYTES <= STEPS[0] && STEPS_END <= PIXELS);
