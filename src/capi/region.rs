@@ -9,8 +9,8 @@ use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::Region;
 
-/// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
-/// the same bytes as the frame, unless that has glare (BhrFilm.bloom).
+/// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
+/// have the same bytes as the frame, unless that has glare (BhrFilm.bloom).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrRegion {
@@ -48,11 +48,9 @@ impl TryFrom<BhrRegion> for Region {
     }
 }
 
-/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Glare
-/// and beams come from the whole frame: with a region, 8-bit images of light with a film that has either are
-/// INVALID_STATE when they are rendered; of the default film the glare is left out (BhrFilm.bloom). An image that
-/// reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
-/// INVALID_ARGUMENT.
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
+/// is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and INVALID_STATE for
+/// 8-bit images of light with a film that has glare or a beam (see BhrFilm.bloom).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -329,13 +329,17 @@ fn declared(block: &str) -> &str {
     after("#define ").or_else(opaque_or_struct).or_else(|| after("(*")).or_else(alias).or_else(function).unwrap()
 }
 
-/// The blocks of a section, one blank line between them. Constants that follow each other make a table, with their
-/// comments beside them, if each comment fits on its line; so do the fields of a struct with short comments.
+/// The blocks of a section, one blank line between them. Constants that follow each other and whose comments fit beside
+/// them make a table; so do the fields of a struct with short comments.
 fn in_tables(blocks: &[&str]) -> String {
-    let is_constant = |block: &&str| block.contains("#define ");
-    let groups = blocks.chunk_by(|a, b| is_constant(a) && is_constant(b));
-    let written = groups.map(|group| table(group).unwrap_or_else(|| with_fields_in_lines(&group.join("\n\n"))));
-    written.collect::<Vec<_>>().join("\n\n")
+    let (mut written, mut rest) = (Vec::new(), blocks);
+    while let [block, after @ ..] = rest {
+        let tables = (1..=rest.len()).map_while(|rows| Some((table(&rest[..rows])?, rows)));
+        let (text, rows) = tables.last().unwrap_or_else(|| (with_fields_in_lines(block), rest.len() - after.len()));
+        written.push(text);
+        rest = &rest[rows..];
+    }
+    written.join("\n\n")
 }
 
 /// `text` with the comment of each struct's field beside it where it fits on the line.
@@ -372,25 +376,33 @@ fn table(group: &[&str]) -> Option<String> {
     lines.iter().all(|line| line.len() <= MAX_LINE && !line.contains('\n')).then(|| lines.join("\n"))
 }
 
-/// BHR_NODISCARD before each function that returns a status; its parameters on a line each where they need it.
+/// BHR_NODISCARD before each function that returns a status; its parameters on as many lines as they need.
 fn with_nodiscard(text: &str) -> String {
     let mut parts = text.split("\nBhrStatus bhr_");
     let mut marked = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (prototype, rest) = part.split_once(");").expect("a prototype ends");
         let line = prototype.split_whitespace().collect::<Vec<_>>().join(" ");
-        let mut line = format!("BHR_NODISCARD BhrStatus bhr_{line});");
-        if line.len() > MAX_LINE {
-            let margin = " ".repeat(line.find('(').unwrap() + 1);
-            line = line.replace(", ", &format!(",\n{margin}"));
-        }
-        marked += &format!("\n{line}{rest}");
+        marked += &format!("\n{}{rest}", filled(&format!("BHR_NODISCARD BhrStatus bhr_{line});")));
     }
     marked
 }
 
-/// Comments of one line on one line, no empty line at the end of a comment, and structs by their typedef, which every
-/// struct has.
+/// A prototype with its parameters below each other's beginning, as many on a line as it holds.
+fn filled(prototype: &str) -> String {
+    let margin = " ".repeat(prototype.find('(').unwrap() + 1);
+    let mut lines = vec![String::new()];
+    for parameter in prototype.split_inclusive(", ") {
+        let room = MAX_LINE - parameter.trim_end().len();
+        match lines.last_mut().filter(|line| line.len() <= room) {
+            Some(line) => line.push_str(parameter),
+            None => lines.push(format!("{margin}{parameter}")),
+        }
+    }
+    lines.iter().map(|line| line.trim_end()).collect::<Vec<_>>().join("\n")
+}
+
+/// Comments without lines of their own for begin and end, and structs by their typedef, which every struct has.
 fn tidy(text: &str) -> String {
     let text = text.replace("typedef struct Bhr", "typedef-Bhr").replace("struct Bhr", "Bhr");
     let text = text.replace("typedef-Bhr", "typedef struct Bhr").replace("\n *\n */", "\n */");
@@ -398,19 +410,19 @@ fn tidy(text: &str) -> String {
     let mut tidied = String::new();
     let mut rest = lines.as_slice();
     while let [first, after @ ..] = rest {
-        rest = match after {
-            [line, end, after @ ..]
-                if first.trim() == "/**" && end.trim() == "*/" && line.len() + "* /".len() <= MAX_LINE =>
-            {
-                let comment = line.trim().trim_start_matches("* ");
-                tidied += &format!("{}{comment} */\n", first.replace("/**", "/** "));
-                after
-            }
-            _ => {
-                tidied += &format!("{first}\n");
-                after
-            }
-        };
+        let end = after.iter().position(|line| line.trim() == "*/").filter(|_| first.trim() == "/**");
+        let (body, code) = end.map_or((&[] as &[&str], after), |end| (&after[..end], &after[end + 1..]));
+        if let [begin, more @ ..] = body {
+            let begun = first.replace("/**", "/** ") + begin.trim().trim_start_matches("* ");
+            let lines: Vec<_> = std::iter::once(begun.as_str()).chain(more.iter().copied()).collect();
+            let fits = lines.last().is_some_and(|line| line.len() + " */".len() <= MAX_LINE);
+            let margin = if fits { String::new() } else { format!("\n{}", first.replace("/**", "")) };
+            tidied += &format!("{}{margin} */\n", lines.join("\n"));
+            rest = code;
+        } else {
+            tidied += &format!("{first}\n");
+            rest = after;
+        }
     }
     tidied
 }

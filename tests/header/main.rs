@@ -9,5 +9,6 @@ mod generated;
 mod json;
 mod layouts;
 mod model;
+mod prose;
 mod symbols;
 mod third_party;
