@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The shape of every entry point: set the thread's state, refuse calls from inside callbacks, run one closure under the
-//! panic guard (with a context, call.rs: under its lock), and turn the result into a status, this thread's message and a
-//! log line.
+//! The shape of every entry point: set the thread's state, refuse calls from inside callbacks, run one closure under
+//! the panic guard (with a context, call.rs: under its lock), and turn the result into a status, this thread's message
+//! and a log line.
 
 use super::callback::in_callback;
 use super::message::keep_message;

@@ -26,7 +26,7 @@ pub struct Call {
     /// The words of a call around this one, where a callback has made it.
     outer: Option<ControlWords>,
     _uncancelled: Uncancelled,
-    /// It belongs to its thread.
+    /// A call belongs to its thread.
     _thread: PhantomData<*const ()>,
 }
 

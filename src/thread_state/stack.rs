@@ -31,7 +31,7 @@ mod linux {
     const SIZE: usize = 2 << 20;
     /// The pages at a stack's low end that nobody may touch.
     const GUARD: usize = 64 << 10;
-    /// The frames that change a stack, but for the work that they carry, and what the ABI keeps below them, are smaller.
+    /// More than the frames that change a stack take, but for the work that they carry, with what the ABI keeps free.
     const MARGIN: usize = 1 << 10;
     /// No ABI asks for more.
     const ALIGNMENT: usize = 64;

@@ -233,6 +233,28 @@ static void check_log(BhrBackend backend, BhrLogLevel level, int expects_message
     CHECK(level != BHR_LOG_OFF || log.messages == 0, "%d messages although the log is off", log.messages);
 }
 
+/* A cancel is the host's own wish: no error in the log, but a line for those who want to know. */
+static void check_log_of_cancel(BhrBackend backend, BhrLogLevel level, int expected) {
+    enum { SIDE = 16 };
+    static unsigned char pixels[SIDE * SIDE * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, sizeof pixels);
+    Log                  log = {NULL, 0, 0, 0, 0, 0, level};
+    Progress             progress = silent_progress(NULL);
+    BhrContextOptions    options = check_options(backend);
+    options.log_level = level;
+    options.log_fn = on_log;
+    options.log_user = &log;
+    BhrContext *context = check_context_with(&options);
+    progress.cancel_at = 0.0;
+    CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+    const int before = log.messages;
+    const BhrStatus status = bhr_render_image(context, &image);
+    CHECK(status == BHR_ERROR_CANCELLED, "%s", bhr_status_name(status));
+    CHECK(log.messages == before + expected, "%d messages about a cancel at level %d", log.messages - before,
+          (int)level);
+    bhr_context_destroy(context);
+}
+
 /* Software takes long for a sample: a frame that is cancelled ends after the next one, whatever its number. */
 static void software_asks_after_each_sample(BhrContext *context) {
     enum { SIDE = 64, SAMPLES = 12 };
@@ -265,5 +287,7 @@ int main(int argc, char **argv) {
     check_log(backend, BHR_LOG_ERROR, 0);
     check_log(backend, BHR_LOG_INFO, 0);
     check_log(backend, BHR_LOG_TRACE, backend == BHR_BACKEND_VULKAN); /* wgpu always has something to say */
+    check_log_of_cancel(backend, BHR_LOG_WARN, 0);
+    check_log_of_cancel(backend, BHR_LOG_INFO, 1);
     return check_end();
 }

@@ -167,6 +167,27 @@ static void progress_is_heard(BhrContext *context) {
     bhr_job_destroy(job);
 }
 
+static int32_t hear_between(void *user, double fraction) {
+    *(int *)user += fraction > 0.0 && fraction < 1.0;
+    return 1;
+}
+
+/* A frame of one tile is heard of between its begin and its end: once in a while, as the waiter may sleep so long. */
+static void small_job_is_heard_of(BhrContext *context) {
+    enum { SIDE = 12, MOST = 200 };
+    static unsigned char pixels[SIDE * SIDE * 4];
+    const BhrImage       target = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, sizeof pixels);
+    int                  heard = 0;
+    CHECK_OK(bhr_set_progress(context, hear_between, &heard));
+    for (int i = 0; i < MOST && heard == 0; i++) {
+        BhrJob *job = submit(context, &target);
+        CHECK_OK(bhr_job_wait(job, FOR_EVER, NULL));
+        bhr_job_destroy(job);
+    }
+    CHECK(heard > 0, "of %d jobs only begin and end were heard", MOST);
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+}
+
 static void progress_cancels(BhrContext *context) {
     for (int by_answer = 0; by_answer <= 1; by_answer++) {
         Progress progress = {.cancels = !by_answer, .answers_no = by_answer};
@@ -375,6 +396,7 @@ int main(int argc, char **argv) {
         two_waiters(context);
     }
     progress_is_heard(context);
+    small_job_is_heard_of(context);
     progress_cancels(context);
     destroy_while_running(context, small);
     if (!brief) {
