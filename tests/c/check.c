@@ -182,8 +182,7 @@ int check_fails(BhrStatus status, BhrStatus expected, const char *words, const c
 
 /* ---- a watched context ---- */
 
-/* Everything the getters say, and a frame: that holds time, effects, view and region too, which have no getter. */
-void watch_begin(Watch *watch, BhrContext *context) {
+static void ask_getters(Watch *watch, BhrContext *context) {
     memset(watch, 0, sizeof *watch);
     watch->context = context;
     watch->camera.struct_size = sizeof watch->camera;
@@ -200,15 +199,35 @@ void watch_begin(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_get_sky(context, &watch->sky));
     CHECK_OK(bhr_get_film(context, &watch->film));
     CHECK_OK(bhr_get_quality(context, &watch->quality));
+}
+
+static void look(Watch *watch) {
     const BhrImage image =
         image_of(BHR_FORMAT_RGBA8_SRGB, WATCH_WIDTH, WATCH_HEIGHT, watch->frame, sizeof watch->frame);
-    watch->frame_status = bhr_render_image(context, &image);
+    watch->frame_status = bhr_render_image(watch->context, &image);
+}
+
+/* Everything the getters say, and a frame: that holds time, effects, view and region too, which have no getter. */
+void watch_begin(Watch *watch, BhrContext *context) {
+    ask_getters(watch, context);
+    look(watch);
+}
+
+/* The CPU tracer's frame is looked at after every refusal. On a GPU, where a software driver takes long for a frame,
+ * one look is for eight refusals: arguments are checked before a tracer is asked for anything. */
+static int has_a_look(void) {
+    static unsigned refusals;
+    return strcmp(backend_argument, "cpu") == 0 || refusals++ % 8 == 0;
 }
 
 int check_unchanged(const Watch *watch, const char *file, int line, const char *call) {
-    Watch now;
-    watch_begin(&now, watch->context);
+    Watch       now;
+    const int   looks = has_a_look();
     const char *wrong = NULL;
+    ask_getters(&now, watch->context);
+    if (looks) {
+        look(&now);
+    }
     if (now.mass != watch->mass || now.spin != watch->spin || memcmp(now.axis, watch->axis, sizeof now.axis) != 0) {
         wrong = "hole";
     } else if (memcmp(&now.camera, &watch->camera, sizeof now.camera) != 0) {
@@ -227,13 +246,14 @@ int check_unchanged(const Watch *watch, const char *file, int line, const char *
         wrong = "film";
     } else if (memcmp(&now.quality, &watch->quality, sizeof now.quality) != 0) {
         wrong = "quality";
-    } else if (now.frame_status != watch->frame_status) {
+    } else if (looks && now.frame_status != watch->frame_status) {
         wrong = "status of a frame";
-    } else if (memcmp(now.frame, watch->frame, sizeof now.frame) != 0) {
+    } else if (looks && memcmp(now.frame, watch->frame, sizeof now.frame) != 0) {
         wrong = "frame";
     }
     if (wrong != NULL) {
-        printf("%s:%d: %s: a refused call changed the context: %s\n", file, line, call, wrong);
+        printf("%s:%d: %s: a refused call, this one or one since the last look, changed the context: %s\n", file, line,
+               call, wrong);
         fflush(stdout);
     }
     return count(wrong == NULL);

@@ -136,7 +136,7 @@ fn direction(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> Opti
 #[test]
 fn wide_frames_show_what_perspective_ones_do() {
     for (tracer, mut renderer) in both() {
-        for way in WAYS {
+        for &way in ways() {
             for (projection, size) in [(Projection::Fisheye, [60, 66]), (Projection::Equirect, [90, 36])] {
                 for view in [View::Light, View::Deflection, View::Redshift] {
                     let format = if view == View::Light { PixelFormat::Rgba32F } else { PixelFormat::R32F };
@@ -182,8 +182,12 @@ fn tiles_of_every_projection_join() {
     // Wide enough for the odd tiles.
     let sizes = [[75, 50], [61, 50], [75, 50], [300, 50]];
     for (tracer, mut renderer) in both() {
-        for ((projection, _), size) in PROJECTIONS.into_iter().zip(sizes) {
-            for way in TWO_WAYS {
+        for (i, ((projection, _), size)) in PROJECTIONS.into_iter().zip(sizes).enumerate() {
+            for (j, way) in TWO_WAYS.into_iter().enumerate() {
+                // Everyday each projection in one way, each way with two projections.
+                if !runs_all() && i % 2 != j {
+                    continue;
+                }
                 set(&mut renderer, projection, way);
                 renderer.scene.disk.as_mut().unwrap().turbulence = 1.0;
                 let format = PixelFormat::Rgba16F;
@@ -339,7 +343,8 @@ fn stars_keep_their_light_across_the_borders_of_faces() {
     const SIDE: u32 = 128;
     let star = catalogue::stars().next().unwrap().direction;
     for (tracer, mut renderer) in both() {
-        for way in TWO_WAYS {
+        // So far from the hole all ways find the same rays: everyday one of them.
+        for way in TWO_WAYS.into_iter().take(if runs_all() { 2 } else { 1 }) {
             set(&mut renderer, Projection::Cube, way);
             renderer.scene.disk = None;
             renderer.scene.camera.position = DVec3::new(2e5, 3e5, -1e5);

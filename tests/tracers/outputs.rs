@@ -235,7 +235,9 @@ fn light_is_the_frame_alone() {
             renderer.scene.quality.samples_per_pixel = samples;
             renderer.scene.film.bloom = bloom;
             renderer.scene.disk.as_mut().unwrap().turbulence = turbulence;
-            for format in [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F] {
+            // Everyday several samples are seen in half floats, one sample in bytes.
+            let formats = [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F];
+            for format in formats.into_iter().filter(|format| runs_all() || (*format == formats[1]) == (samples > 1)) {
                 let alone = picture(&mut renderer, format, SIZE, None, false);
                 let among = outputs(&mut renderer, &[DEPTH, Output::Light, SKY], format, SIZE, None);
                 assert!(alone == among[1], "{name}, {samples} samples, bloom {bloom}, {format}");

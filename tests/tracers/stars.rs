@@ -4,7 +4,7 @@
 //! tests fail.
 
 use crate::frames::{cpu, differing, floats, gpu, new_gpu, picture, tiled};
-use crate::random::Random;
+use crate::random::{Random, runs_all};
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{LUMINANCE, radiance_xyz};
 use bhr::renderer::Renderer;
@@ -346,8 +346,11 @@ fn a_field_has_the_flux_that_the_lens_equation_gives() {
 
 // ---- steadiness ----
 
-/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/tracers/pictures.rs).
-const TURNS: [usize; 2] = [17, 64];
+/// Frames of the CPU and of the GPU that the camera turns for, through a pixel and through four; the pictures are the
+/// same (tests/tracers/pictures.rs). Everyday through half a pixel and through one and a half.
+fn turns() -> [usize; 2] {
+    if runs_all() { [17, 64] } else { [9, 24] }
+}
 
 /// Calls `see` with the light of each of `frames`, the camera turning by a sixteenth of a pixel from one to the next.
 fn turning(renderer: &mut Renderer, size: [u32; 2], frames: usize, mut see: impl FnMut(&Light)) {
@@ -374,7 +377,7 @@ fn each_star_is_steady_while_the_camera_turns() {
     let mut stars = isolated_stars();
     // And some far from the hole, where the lens does little.
     stars.extend([(0.5, 0.3), (0.55, 2.9), (0.6, 3.4), (0.7, 6.1)].map(|(beta, turn)| Lensed::new(beta, turn, 0.2, 1)));
-    for ((name, mut renderer), frames) in both().into_iter().zip(TURNS) {
+    for ((name, mut renderer), frames) in both().into_iter().zip(turns()) {
         renderer.scene.camera = looking_at_the_hole(1.0);
         renderer.scene.given_stars = given(&stars);
         let images = isolated_images(&stars, &Screen::new(&renderer.scene.camera, size), 13.0);
@@ -403,7 +406,7 @@ fn nothing_sparkles_while_the_camera_turns() {
     let windows = [(0.17, 1.0), (0.2, 3.0), (0.36, 0.1), (0.36, 4.0), (0.7, 0.2), (0.75, 3.0)];
     let windows = windows.map(|(psi, turn)| around_the_hole(psi, turn));
     for flags in [Sky::STARS, Sky::PROCEDURAL] {
-        for ((name, mut renderer), frames) in both().into_iter().zip(TURNS) {
+        for ((name, mut renderer), frames) in both().into_iter().zip(turns()) {
             renderer.scene.sky.flags = flags;
             renderer.scene.camera = looking_at_the_hole(1.0);
             let mut sums = windows.map(|_| Vec::new());
