@@ -27,7 +27,7 @@ pub(super) struct RunningCallback<'a>(&'a Gate);
 
 impl Gate {
     fn lock(&self) -> MutexGuard<'_, State> {
-        // A panic leaves nothing under this lock half done.
+        // Nothing under this lock is left half done by a panic.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
