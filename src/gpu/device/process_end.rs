@@ -240,7 +240,8 @@ mod tests {
         std::thread::spawn(|| drop(enter())).join().unwrap();
         assert!(STATE.load(Ordering::SeqCst) & CLOSED != 0);
         own(|| drop(enter())).join().unwrap();
-        assert!(closed.elapsed() >= PAUSE && STATE.load(Ordering::SeqCst) == 0);
+        // Threads of other tests may be within by now.
+        assert!(closed.elapsed() >= PAUSE && STATE.load(Ordering::SeqCst) & CLOSED == 0);
         ENDING.store(0, Ordering::SeqCst);
     }
 }
