@@ -166,27 +166,8 @@ impl GpuTracer {
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
         let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
-        let pixel_bytes = if delivery.is_packed() { request.format.bytes_per_pixel() as u64 } else { 0 };
-        let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
-        // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
-        // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
-        let steps_of = |source, in_kerr| match source {
-            RecordSource::Traced => scene.expected_steps(),
-            RecordSource::Schwarzschild { .. } => 2,
-            RecordSource::Kerr { .. } => in_kerr,
-        };
-        let traced = beside.as_ref().filter(|beside| beside.takes_rays());
-        let ray_steps = steps_of(setup.record_setup.source, 8)
-            + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source, 3).div_ceil(samples.into()));
-        // Packed pixels have two staging buffers.
-        let bytes = setup.record_setup.bytes_per_pixel()
-            + beside.as_ref().map_or(0, BesideSetup::bytes_per_pixel)
-            + sums
-            + 3 * pixel_bytes
-            + EdgeList::BYTES_PER_PIXEL;
-        let most_rows = delivery.most_rows(&self.device)?;
-        let most_rows = most_rows.min(beside.as_ref().map_or(Ok(u32::MAX), |beside| beside.most_rows(&self.device))?);
-        let steps = self.steps(scene, request, &setup, (bytes, ray_steps), most_rows);
+        let pixel_bytes = packed_bytes(request, &delivery);
+        let steps = self.steps(scene, request, &setup, beside.as_ref(), &delivery)?;
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         [setup.uniform.milky_way_size, setup.uniform.map_size] = tables.map_sizes();
@@ -237,15 +218,18 @@ impl GpuTracer {
         })
     }
 
-    /// `bytes` that a pixel of a tile takes, and steps of its ray; `most_rows` of a tile.
+    /// The steps in which the frame is made. Errors: UNSUPPORTED for rows that no kernel reaches.
     fn steps(
         &self,
         scene: &Scene,
         request: &FrameRequest,
         setup: &Setup,
-        (bytes, ray_steps): (u64, u64),
-        most_rows: u32,
-    ) -> Steps {
+        beside: Option<&BesideSetup>,
+        delivery: &Delivery,
+    ) -> Result<Steps> {
+        let (bytes, ray_steps) = cost_of_pixel(scene, setup, beside, packed_bytes(request, delivery));
+        let most_rows = delivery.most_rows(&self.device)?;
+        let most_rows = most_rows.min(beside.map_or(Ok(u32::MAX), |beside| beside.most_rows(&self.device))?);
         let budget = Budget::of(self.adapter.info.discrete, self.device.limits().max_storage_buffer_binding_size);
         let longest = self.device.limits().max_texture_dimension_2d;
         let side = longest.min(MAX_TILE_SIDE).min(most_rows.saturating_add(2));
@@ -253,17 +237,17 @@ impl GpuTracer {
         // Software takes a good part of a second for a sample: a frame that is cancelled ends after the next one.
         let batch = if self.adapter.info.software { 1 } else { samples };
         let Some(bloom) = &setup.bloom else {
-            return Steps::plain(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples);
+            return Ok(Steps::plain(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples));
         };
         let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
         let fits = size.iter().all(|side| *side <= longest) && light <= budget.memory;
         if fits && scene.quality.keep_light.unwrap_or(true) {
-            return Steps::kept(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples, bloom);
+            return Ok(Steps::kept(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples, bloom));
         }
-        Steps::twice(request, samples, bloom, |request, pixels| {
+        Ok(Steps::twice(request, samples, bloom, |request, pixels| {
             let side = (u64::from(side) / pixels.isqrt()) as u32;
             TilePlan::new(budget, request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, batch)
-        })
+        }))
     }
 
     /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are
@@ -286,4 +270,32 @@ impl GpuTracer {
         self.buffers.forget();
         self.output_buffers.forget();
     }
+}
+
+/// Bytes of a pixel of a tile that is copied from a buffer of its own; 0: kernels write it where it goes.
+fn packed_bytes(request: &FrameRequest, delivery: &Delivery) -> u64 {
+    if delivery.is_packed() { request.format.bytes_per_pixel() as u64 } else { 0 }
+}
+
+/// Bytes that a pixel of a tile takes on the device, and steps of its rays.
+fn cost_of_pixel(scene: &Scene, setup: &Setup, beside: Option<&BesideSetup>, packed_bytes: u64) -> (u64, u64) {
+    let samples = setup.samples;
+    let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
+    // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
+    // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
+    let steps_of = |source, in_kerr| match source {
+        RecordSource::Traced => scene.expected_steps(),
+        RecordSource::Schwarzschild { .. } => 2,
+        RecordSource::Kerr { .. } => in_kerr,
+    };
+    let traced = beside.filter(|beside| beside.takes_rays());
+    let ray_steps = steps_of(setup.record_setup.source, 8)
+        + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source, 3).div_ceil(samples.into()));
+    // Packed pixels have two staging buffers.
+    let bytes = setup.record_setup.bytes_per_pixel()
+        + beside.map_or(0, BesideSetup::bytes_per_pixel)
+        + sums
+        + 3 * packed_bytes
+        + EdgeList::BYTES_PER_PIXEL;
+    (bytes, ray_steps)
 }
