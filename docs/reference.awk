@@ -33,6 +33,7 @@ first && title_next && /^ \* [^ ]/ && !/[.,;:]$/ && length($0) < 40 {
 first {
     title_next = $0 ~ /^ \*$/
     sub(code ? "^ [*]   " : "^ [*] +", " * ")
+    gsub(/"@/, "\"@@") # a tag that is spoken of
     print
     next
 }

@@ -67,8 +67,7 @@ static void set_spin(double spin) {
 }
 
 static BhrHoleInfo hole_info(void) {
-    BhrHoleInfo info;
-    BHR_INIT(info);
+    BhrHoleInfo info = {.struct_size = sizeof info};
     if (!worked(bhr_hole_info(context, &info))) {
         info.isco_prograde = info.isco_retrograde = info.photon_orbit_prograde = info.photon_orbit_retrograde = NAN;
         info.shadow_angular_radius = info.camera_time_rate = NAN;
@@ -79,7 +78,7 @@ static BhrHoleInfo hole_info(void) {
 /* A camera at radius r and angle theta from the axis, azimuth 0. */
 static void set_camera(double r, double theta, BhrMotion motion) {
     BhrCamera camera;
-    BHR_INIT(camera);
+    bhr_camera_init(&camera, sizeof camera);
     camera.position[0] = r * sin(theta), camera.position[1] = 0.0, camera.position[2] = r * cos(theta);
     camera.forward[0] = -sin(theta), camera.forward[1] = 0.0, camera.forward[2] = -cos(theta);
     camera.up[0] = -cos(theta), camera.up[1] = 0.0, camera.up[2] = sin(theta);
@@ -330,7 +329,7 @@ static void circular_orbits(void) {
             const double r = first + 0.5 * (double)step, w = 1.0 / (r * sqrt(r));
             BhrCamera    camera;
             set_camera(r, 0.5 * PI, BHR_MOTION_ORBIT);
-            BHR_INIT(camera);
+            bhr_camera_init(&camera, sizeof camera);
             double passed = NAN;
             if (!worked(bhr_get_camera(context, &camera)) ||
                 !worked(bhr_camera_advance(context, &camera, 1.0, &passed))) {
@@ -399,7 +398,7 @@ int main(int argc, char **argv) {
         return report_failure("no context", status);
     }
     BhrQuality quality;
-    BHR_INIT(quality);
+    bhr_quality_init(&quality, sizeof quality);
     quality.method = BHR_METHOD_ADAPTIVE, quality.tolerance = 1e-14, quality.max_steps = 100000;
     worked(bhr_set_quality(context, &quality));
     if (form == JSON) {

@@ -350,7 +350,7 @@ static const Choice MATTERS[] = {{"thin", BHR_PRESET_MATTER_THIN}, {"deep", BHR_
 
 static BhrImage image_of(const World *world, BhrFormat format, float *pixels) {
     BhrImage image;
-    BHR_INIT(image);
+    bhr_image_init(&image, sizeof image);
     image.format = format;
     image.width = world->width;
     image.height = world->height;
@@ -398,7 +398,7 @@ static BhrStatus trace(World *world) {
     for (size_t i = 0; i < COUNT_OF(kinds); i++) {
         images[i] = image_of(world, kinds[i] == BHR_OUTPUT_DEPTH ? BHR_FORMAT_R32F : BHR_FORMAT_RGBA32F, pixels[i]);
         images[i].flags = BHR_IMAGE_TRANSPARENT;
-        BHR_INIT(outputs[i]);
+        bhr_output_init(&outputs[i], sizeof outputs[i]);
         outputs[i].kind = kinds[i];
         outputs[i].image = &images[i];
     }
@@ -466,12 +466,12 @@ static BhrStatus save(const World *world, const char *path) {
 static BhrStatus set_matter(BhrContext *context, int32_t matter) {
     if (matter == BHR_PRESET_MATTER_DEEP) {
         BhrPresetOptions options;
-        BHR_INIT(options);
+        bhr_preset_options_init(&options, sizeof options);
         options.matter = matter;
         return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
     }
     BhrDisk disk;
-    BHR_INIT(disk);
+    bhr_disk_init(&disk, sizeof disk);
     disk.opacity = 0.8;
     return bhr_set_disk(context, &disk);
 }

@@ -143,18 +143,18 @@ fn the_interface_of_each_release_is_kept() {
 type Change = [&'static str; 4];
 
 const CHANGES: [Change; 17] = [
-    ["a new function", "\n#define BHR_OK ", "\n/** Since 9.0.0. */\nvoid bhr_new(void);\n\n#define BHR_OK ", ""],
-    ["a new field at the end", "\n} BhrQuality;", "\n    double more; /**< Since 9.0.0. */\n} BhrQuality;", ""],
+    ["a new function", "\n#define BHR_OK ", "\n/** @since 9.0.0 */\nvoid bhr_new(void);\n\n#define BHR_OK ", ""],
+    ["a new field at the end", "\n} BhrQuality;", "\n    double more; /**< @since 9.0.0 */\n} BhrQuality;", ""],
     ["the same without since when", "\n} BhrQuality;", "\n    double more;\n} BhrQuality;", "BhrQuality"],
     [
         "a new field before others",
         "    uint32_t x; ",
-        "    double u; /**< Since 9.0.0. */\n    uint32_t x; ",
+        "    double u; /**< @since 9.0.0 */\n    uint32_t x; ",
         "its end",
     ],
     ["the same without since when", "    uint32_t x; ", "    double u;\n    uint32_t x; ", "BhrRegion"],
-    ["a longer BhrRay", "\n} BhrRay;", "\n    double more; /**< Since 9.0.0. */\n} BhrRay;", "BhrRay has grown"],
-    ["a longer BhrHit", "\n} BhrHit;", "\n    double more; /**< Since 9.0.0. */\n} BhrHit;", ""],
+    ["a longer BhrRay", "\n} BhrRay;", "\n    double more; /**< @since 9.0.0 */\n} BhrRay;", "BhrRay has grown"],
+    ["a longer BhrHit", "\n} BhrHit;", "\n    double more; /**< @since 9.0.0 */\n} BhrHit;", ""],
     ["no field any more", "    double opacity; ", "", "BhrDisk"],
     ["a field by another name", "double opacity; ", "double density; ", "opacity"],
     ["a wider field", "    uint32_t x; ", "    uint64_t x; ", "BhrRegion"],

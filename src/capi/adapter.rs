@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrAdapterInfo and BhrBackend: what bhr can run on.
 
-use super::entry::{anywhere, outside_callbacks};
+use super::entry::outside_callbacks;
 use super::message::copy_text;
 use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::tracer::{AdapterInfo, Backend};
 use crate::tracers;
@@ -16,21 +16,9 @@ pub const BHR_ADAPTER_DISCRETE: u32 = 1u32;
 /// BhrAdapterInfo.flags: a software driver, or the CPU tracer.
 pub const BHR_ADAPTER_SOFTWARE: u32 = 2u32;
 
-/// The interface to an adapter.
-///
-/// BHR_BACKEND_AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches;
-/// else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which
-/// needs seconds for its first frame, is never chosen.
-///
-/// BHR_BACKEND_GL reaches OpenGL and OpenGL ES through EGL or WGL, hardware or software. A thread of the library makes
-/// all its GL calls, and ends with the context: a GL context that is current on one of the host's threads stays
-/// current. With Mesa, bhr's GL context uses EGL's surfaceless display. A process has only one of these, and bhr never
-/// terminates it. If the host does (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until
-/// bhr_context_recover; a bhr_context_create or bhr_context_recover that is running meanwhile returns
-/// BHR_ERROR_NO_ADAPTER. The host may call eglTerminate while a call or a job of one context is running, but not while
-/// calls or jobs of several contexts on this backend are: EGL may give the handle of a context that has ended to
-/// another one. Each time, some 10 MiB and a sleeping thread for each context may stay behind until the process ends,
-/// because a context that has lost its display cannot be closed.
+/// The interface to an adapter. AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that
+/// only OpenGL reaches; else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. It
+/// never takes software OpenGL.
 pub type BhrBackend = i32;
 /// The best one there is, in the order above.
 pub const BHR_BACKEND_AUTO: BhrBackend = 0;
@@ -42,7 +30,7 @@ pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
 pub const BHR_BACKEND_METAL: BhrBackend = 3;
 /// Direct3D 12.
 pub const BHR_BACKEND_D3D12: BhrBackend = 4;
-/// OpenGL or OpenGL ES.
+/// OpenGL or OpenGL ES, by EGL or WGL. A host that ends EGL's display: docs/adapters.md.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
 
 const TEXT: usize = 256;
@@ -125,17 +113,8 @@ pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
     }))
 }
 
-/// Clears struct_size bytes and sets struct_size, which calls that fill the struct read. Any thread, inside callbacks
-/// too. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_adapter_info_init(info: *mut BhrAdapterInfo, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_adapter_info_init", || unsafe { versioned::init(info, "info", struct_size) })
-}
-
-/// Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last. Adapters
-/// other than GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks.
-/// Errors: INVALID_ARGUMENT for NULL.
+/// Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last.
+/// Adapters other than GL are looked for once in a process; bhr_context_recover looks again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -147,9 +126,8 @@ pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     })
 }
 
-/// Fills in info for the adapter at index: GPUs come first, then software drivers, the CPU tracer last.
-/// BHR_BACKEND_AUTO need not take the first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a
-/// wrong struct_size, or an index not below bhr_adapter_count.
+/// Fills in info for the adapter at index, below bhr_adapter_count: GPUs come first, then software drivers, the CPU
+/// tracer last. BHR_BACKEND_AUTO need not take the first one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_info(index: u32, info: *mut BhrAdapterInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

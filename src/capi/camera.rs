@@ -15,47 +15,41 @@ use glam::DVec3;
 pub type BhrProjection = i32;
 /// A flat picture; fov_y in (0, pi).
 pub const BHR_PROJECTION_PERSPECTIVE: BhrProjection = 0;
-/// Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
-/// fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
-/// 0 in a TRANSPARENT image, NaN in views, rays without direction.
+/// Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y
+/// / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in
+/// a TRANSPARENT image, NaN in views, rays without direction.
 pub const BHR_PROJECTION_FISHEYE: BhrProjection = 1;
-/// All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude towards
-/// up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the
-/// poles, where pixels are far narrower than high, the light of single stars is not exact.
+/// All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude
+/// towards up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched.
 pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
-/// Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face it
-/// is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way sees, not
-/// its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a
-/// frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
-/// corners up to a quarter is lost.
+/// Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face
+/// it is backward, of the down face forward. Each is what a 90 degree PERSPECTIVE camera sees, not its mirror image;
+/// fov_y is ignored. The full frame's width must be 6 times its height, else rendering is INVALID_STATE.
 pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
-/// A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or
-/// of a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any:
-/// it is stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up
-/// times the frame's width / height it is PERSPECTIVE. Since 0.2.0.
+/// A flat picture between four tangents, as the frustum of a projection matrix: tan_left, tan_right, tan_down,
+/// tan_up. fov_y is ignored, and the frame's shape may be any: it is stretched to the tangents. @since 0.2.0
 pub const BHR_PROJECTION_FRUSTUM: BhrProjection = 4;
 
-/// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
-/// or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
-/// circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
-/// circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
+/// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a
+/// frame or rays are asked for.
 pub type BhrMotion = i32;
 /// At rest; with spin, the zero angular momentum observer (ZAMO).
 pub const BHR_MOTION_STATIC: BhrMotion = 0;
-/// Falls radially from rest at infinity.
+/// Falls radially from rest at infinity, inside a spin-0 horizon too.
 pub const BHR_MOTION_FREE_FALL: BhrMotion = 1;
-/// On a circular orbit towards +ph.
+/// On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
+/// the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
 pub const BHR_MOTION_ORBIT: BhrMotion = 2;
 /// Moves with BhrCamera.velocity.
 pub const BHR_MOTION_VELOCITY: BhrMotion = 3;
 
-/// The eye for which an EQUIRECT picture is made. Since 0.2.0.
+/// The eye for which an EQUIRECT picture is made. @since 0.2.0
 pub type BhrEye = i32;
-/// The camera's own place: no stereo picture. Since 0.2.0.
+/// The camera's own place: no stereo picture.
 pub const BHR_EYE_MIDDLE: BhrEye = 0;
-/// The left eye. Since 0.2.0.
+/// The left eye.
 pub const BHR_EYE_LEFT: BhrEye = 1;
-/// The right eye. Since 0.2.0.
+/// The right eye.
 pub const BHR_EYE_RIGHT: BhrEye = 2;
 
 /// The camera: an observer with a lens. Positions and axes in scene axes and lengths.
@@ -72,8 +66,8 @@ pub struct BhrCamera {
     pub forward: [f64; 3],
     /// Any non-zero length, not parallel to forward. Default +z.
     pub up: [f64; 3],
-    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
-    /// pi / 4.
+    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi
+    /// / 4.
     pub fov_y: f64,
     /// BHR_MOTION_*. Default STATIC.
     pub motion: BhrMotion,
@@ -83,31 +77,25 @@ pub struct BhrCamera {
     /// direction given at position. Default 0.
     pub velocity: [f64; 3],
     /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
-    /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
-    /// Since 0.2.0.
+    /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them. @since 0.2.0
     pub tan_left: f64,
-    /// The right border. Since 0.2.0.
+    /// The right border. @since 0.2.0
     pub tan_right: f64,
-    /// The lower border. Since 0.2.0.
+    /// The lower border. @since 0.2.0
     pub tan_down: f64,
-    /// The upper border. Since 0.2.0.
+    /// The upper border. @since 0.2.0
     pub tan_up: f64,
-    /// The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
-    /// within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0. Since 0.2.0.
+    /// Pixels that the whole picture moves to the right and down, each within +-1, for temporal antialiasing. For
+    /// PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0. @since 0.2.0
     pub jitter: [f64; 2],
-    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. Since
-    /// 0.2.0.
+    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. @since 0.2.0
     pub eye_distance: f64,
     /// BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
-    /// stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
-    /// about position and up, looks at that column. Columns share an eye, up to 64, where things half as far as the
-    /// hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
-    /// so that a picture takes longer. The rays of bhr_camera_rays are those of its pixels. Bloom that the preset
-    /// has is left out; other bloom, and a beam, are INVALID_STATE; windows, bhr_project_point, outputs other than
-    /// LIGHT, occluders and targets on the GPU are UNSUPPORTED. Towards the poles, as in all such pictures, depth is
-    /// wrong. Other projections ignore it. Default MIDDLE. Since 0.2.0.
+    /// stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and
+    /// a beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the
+    /// GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md. @since 0.2.0
     pub eye: BhrEye,
-    /// Reserved: 0. Since 0.2.0.
+    /// Reserved: 0. @since 0.2.0
     pub reserved2: u32,
 }
 
@@ -200,8 +188,7 @@ fn motion(value: BhrMotion) -> Result<Motion> {
     })
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size.
+/// Fills in the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_init(camera: *mut BhrCamera, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
@@ -222,10 +209,9 @@ unsafe fn aim(camera: *mut BhrCamera, position: DVec3, forward: DVec3, up: DVec3
     }
 }
 
-/// Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
-/// too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
-/// 0, 0) or equal to target, up zero or along the line of sight.
-///
+/// Sets position, forward (towards target) and up of a camera; touches no context. On failure the camera stays as it
+/// was.
+/// Errors: INVALID_ARGUMENT for position (0, 0, 0) or equal to target, up zero or along the line of sight.
 /// cbindgen:ptrs-as-arrays=[[position;3], [target;3], [up;3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_look_at(
@@ -264,9 +250,8 @@ fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec3, DVec3)> 
 
 /// Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
 /// towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
-/// Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). Any thread,
-/// inside callbacks too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, a number not
-/// finite, distance <= 0.
+/// Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). On failure the
+/// camera stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_orbit(
     camera: *mut BhrCamera,
@@ -282,9 +267,8 @@ pub unsafe extern "C" fn bhr_camera_orbit(
     })
 }
 
-/// Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
-/// or parallel, fov_y out of range, |velocity| >= 1, tangents, jitter or eye_distance that are out of range, an
-/// unknown constant.
+/// Sets the camera.
+/// Errors: INVALID_ARGUMENT also for position (0, 0, 0), and forward or up that are zero or parallel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const BhrCamera) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -296,7 +280,7 @@ pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const
     }
 }
 
-/// The camera as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Reads the camera as it is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut BhrCamera) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -306,13 +290,12 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
     }
 }
 
-/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
-/// one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
-/// it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time,
-/// and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from outside to inside (M
-/// = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time. On failure the camera
-/// stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
-/// UNSUPPORTED for VELOCITY.
+/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths): a STATIC one
+/// stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
+/// it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time that went by:
+/// add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless (docs/cameras.md).
+/// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible; UNSUPPORTED for
+/// VELOCITY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(
     context: *const BhrContext,

@@ -26,8 +26,7 @@ use std::ptr::{null, null_mut};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
-/// wait for each other.
+/// A scene and what traces it.
 pub struct BhrContext {
     pub(super) state: Mutex<State>,
     /// A call, or a job, failed internally.
@@ -85,7 +84,7 @@ pub struct BhrContextOptions {
     /// Default BHR_BACKEND_AUTO.
     pub backend: BhrBackend,
     /// Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the library
-    /// chooses. 0 is the first adapter, so that a struct which was zeroed instead of initialised asks for that one.
+    /// chooses. A struct that was zeroed instead of initialised asks for adapter 0.
     pub adapter_index: i32,
     /// Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use.
     pub cpu_threads: u32,
@@ -95,10 +94,9 @@ pub struct BhrContextOptions {
     pub log_fn: BhrLogFn,
     /// Handed to log_fn.
     pub log_user: *mut c_void,
-    /// A window that the adapter must be able to present to; it is looked at during the call only. With AUTO, adapters
-    /// that cannot are passed over; the CPU tracer always qualifies, because its frames reach windows in other ways.
-    /// NULL (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
-    /// present.
+    /// A window that the adapter must be able to present to; it is looked at during the call only. With AUTO,
+    /// adapters that cannot are passed over; the CPU tracer always qualifies. NULL (default): any adapter; where it
+    /// cannot present, surfaces work all the same, more slowly. GL adapters never present. docs/window.md.
     pub compatible_window: *const BhrWindow,
 }
 
@@ -163,22 +161,20 @@ impl BhrContextOptions {
     }
 }
 
-/// Clears struct_size bytes and fills in the defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Fills in the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOptions, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
     anywhere("bhr_context_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// Makes a context with the default scene, that of BHR_PRESET_CINEMATIC: a hole of mass 1 without spin, a turbulent
-/// golden disk with soft edges, glare, the stars and the Milky Way, and a camera at (0, 26, 2.5) that looks at the
-/// hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it succeeds on every
-/// machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU tracer serves, and the
-/// log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
-/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform, for any window in a
-/// library that was built without the cargo feature window, and for BHR_BACKEND_GL in one that was built without the
-/// feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
-/// compatible_window.
+/// Makes a context with the default scene: BHR_PRESET_CINEMATIC about a hole of mass 1 without spin, with a camera
+/// at (0, 26, 2.5) that looks at it. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
+/// BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, and the log says
+/// why. End *out_context with bhr_context_destroy.
+/// Errors: INCOMPATIBLE_ABI; UNSUPPORTED for a compatible_window of another platform, and in libraries that were
+/// built without the cargo feature window for any, without gl for BHR_BACKEND_GL; NO_ADAPTER when the backend or
+/// adapter asked for is not there, cannot be opened, or cannot present to compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(
     abi_version: u32,
@@ -257,7 +253,7 @@ fn create_with(log: Option<Registered>, make: impl FnOnce() -> Result<Renderer>)
     Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), message, log }))
 }
 
-/// Fills in info for the adapter that the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Fills in info for the adapter that the context runs on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *mut BhrAdapterInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -267,12 +263,12 @@ pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *
     }
 }
 
-/// Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays, the
-/// sky's map included, but for a sky or an occluder in a target (bhr_interop.h): set those anew. Surfaces made before
-/// are lost: destroy them and make them again. Jobs that a loss of the
-/// device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns
-/// DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
-/// be tried again; UNSUPPORTED on a device of the host's (bhr_context_create_vulkan).
+/// Opens the device anew after DEVICE_LOST, on the same adapter if it is still there; until then every call that
+/// renders or traces returns DEVICE_LOST, while setters go on working. The scene stays, the sky's map included, but
+/// for a sky or an occluder in a target (bhr_interop.h): set those anew. Surfaces made before are lost: destroy them
+/// and make them again. Jobs that were unfinished fail with DEVICE_LOST.
+/// Errors: those of bhr_context_create, after which the context stays lost, and the call may be tried again;
+/// UNSUPPORTED on a device of the host's (bhr_context_create_vulkan).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -304,14 +300,11 @@ pub unsafe fn fail_device(context: *mut BhrContext, what: &'static str, passing:
     }
 }
 
-/// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
-/// into buffer. For hosts whose calls move between threads (goroutines, worker threads of Node or asyncio), where
-/// bhr_error_message may tell of another call. At most size - 1 bytes, cut between characters, and a NUL are written,
-/// nothing when buffer is NULL or size is 0. Returns the length of the whole message in bytes without its NUL, less
-/// than 10,000; 0 when no call has failed, and for a NULL context. While other threads make calls that fail on the
-/// context, the message may be that of one of theirs. Jobs have messages of their own: bhr_job_error_message. A call
-/// that returns no context leaves its message with its thread alone. Any thread, inside callbacks too; it waits for no
-/// other call. Since 0.2.0.
+/// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was
+/// on, into buffer: at most size - 1 bytes, cut between characters, and a NUL; nothing when buffer is NULL or size
+/// is 0. Returns the length of the whole message in bytes without its NUL, less than 10,000; 0 when no call has
+/// failed, and for a NULL context. It waits for no other call. Where other threads make failing calls meanwhile, the
+/// message may be one of theirs. For hosts whose calls move between threads: docs/errors.md. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_error_message(
     context: *const BhrContext,
@@ -322,19 +315,11 @@ pub unsafe extern "C" fn bhr_context_error_message(
     unsafe { copy_last(context.as_ref().map(|context| &*context.message), buffer, size) }
 }
 
-/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
-/// second for pipelines that are being compiled, then frees it. Its surfaces end too, but both they and its jobs must
-/// still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
-/// begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
-/// then says so.
-///
-/// A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload
-/// parts of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads
-/// have come out of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static
-/// objects that run later, calls on contexts and jobs return INVALID_STATE; destroying what uses a GPU frees nothing,
-/// bhr's threads are held up for 10 s more, and calls and callbacks that are running are waited for 3 s at most each.
-/// Threads of the host's go on, but wait if they wait for bhr's: end them before, if they call bhr. (Nothing of this on
-/// Windows, where other threads end first.)
+/// Ends a context and frees it, when a call that is running on it and its jobs are done (bhr_job_cancel shortens
+/// that); pipelines that are being compiled may take up to a second more. Its surfaces end too, but both they and
+/// its jobs must still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned, and
+/// no other thread may begin a call on it any more. From inside a callback it does nothing, as the context is in
+/// use: bhr_error_message then says so. A process may also end without it: docs/process.md.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";

@@ -12,42 +12,29 @@ use crate::scene::{Disk, DiskReference, EmissionLaw};
 
 /// BhrDisk.flags: the matter orbits towards -ph.
 pub const BHR_DISK_RETROGRADE: u32 = 1u32;
-/// BhrDisk.flags: matter shines on its way from the ISCO to the horizon, too. There it keeps the energy and the
-/// angular momentum of the orbit at the ISCO and falls freely (Cunningham 1975, ApJ 202, 788): light, emission law,
-/// views and the g of single rays are those of matter that moves so. Its flux is a model: inside the hottest
-/// ring it is never less than half of that ring's, down to the horizon (that of Page and Thorne falls to 0 at the
-/// ISCO). The disk is not translucent at its inner edge then, and
-/// turbulence fades out within the outer third of the way from the ISCO to the centre. BHR_DISK_AT_MEDIAN means the
-/// orbiting part of the disk, so that light from outside the hottest ring stays as it is without the flag. Rays are
-/// integrated one by one, without lens tables, which takes longer. Since 0.2.0.
+/// BhrDisk.flags: matter shines on its way from the ISCO to the horizon, too, where it falls freely. Rays are
+/// integrated one by one, which takes longer. docs/matter.md has the model. @since 0.2.0
 pub const BHR_DISK_PLUNGES: u32 = 2u32;
 
-/// The ring at whose radius a disk has the stated temperature and brightness. Whichever it is, the
-/// temperature goes along the radius as the fourth root of the Page-Thorne flux, and the luminance is that of a
-/// blackbody so hot.
-/// Since 0.2.0.
+/// The ring at whose radius a disk has the stated temperature and brightness. @since 0.2.0
 pub type BhrDiskReference = i32;
-/// The hottest ring of the profile: at spin 0 r = 9.55 M, at spin 0.998 r = 1.58 M. Where that ring moves inwards, the
-/// rest of the disk darkens. Since 0.2.0.
+/// The hottest ring of the profile: at spin 0 r = 9.55 M, at spin 0.998 r = 1.58 M. Where that ring moves inwards,
+/// the rest of the disk darkens.
 pub const BHR_DISK_AT_HOTTEST: BhrDiskReference = 0;
-/// The ring that halves the disk's area, r^2 = (inner^2 + outer^2) / 2, where of a soft outer edge the outermost
-/// quarter of its fading does not count: the disk as a whole keeps its look when spin or edges change. (The median
-/// luminance of the pixels of the default disk, seen from r = 30 M and 10 degrees above it, stays within a factor of
-/// 1.5 from spin -0.998 to 0.998.) What is farther in is hotter and brighter, at high spin by far. Since 0.2.0.
+/// The ring that halves the disk's area, r^2 = (inner^2 + outer^2) / 2, but for the outermost quarter of a soft
+/// outer edge's fading: the disk as a whole keeps its look when spin or edges change.
 pub const BHR_DISK_AT_MEDIAN: BhrDiskReference = 1;
 
 /// How the disk's light depends on the angle to its normal, in the frame of its matter. The flux is the same.
-/// Since 0.2.0.
+/// @since 0.2.0
 pub type BhrEmissionLaw = i32;
-/// The disk's surface shines alike in all directions. Since 0.2.0.
+/// The disk's surface shines alike in all directions.
 pub const BHR_DISK_ISOTROPIC: BhrEmissionLaw = 0;
-/// As an atmosphere of free electrons, which is what the inner parts of bright disks are (Chandrasekhar 1960,
-/// "Radiative Transfer", table XXIV, linear between its angles): 1.269 times as bright along the normal, 0.414 times at
-/// grazing angles. Since 0.2.0.
+/// Like an atmosphere of free electrons: 1.269 times as bright along the normal, 0.414 times at grazing angles.
 pub const BHR_DISK_LIMB_DARKENED: BhrEmissionLaw = 1;
 
 /// A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux. Radii in
-/// units of M.
+/// units of M. docs/matter.md has the model.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrDisk {
@@ -55,8 +42,8 @@ pub struct BhrDisk {
     pub struct_size: u32,
     /// Any of BHR_DISK_RETROGRADE | BHR_DISK_PLUNGES. Default 0.
     pub flags: u32,
-    /// In M, 0 .. 1e6. The disk begins here, but not inside the ISCO, or with BHR_DISK_PLUNGES not inside the horizon.
-    /// Default 0: at the ISCO, or at the horizon.
+    /// In M, 0 .. 1e6. The disk begins here, but not inside the ISCO, or with BHR_DISK_PLUNGES not inside the
+    /// horizon. Default 0: at the ISCO, or at the horizon.
     pub inner_radius: f64,
     /// In M, greater than inner_radius, to 1e6. Default 17.
     pub outer_radius: f64,
@@ -66,21 +53,18 @@ pub struct BhrDisk {
     pub opacity: f64,
     /// 0 .. 1e6: the luminance of that ring at rest. Default 0.6.
     pub brightness: f64,
-    /// Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default): streaks along the orbit,
-    /// lighter and darker by turns, with the smooth disk's light for their mean. bhr_set_time carries them along, at
-    /// any time to 1e9 M and more, forwards and backwards. At every radius a pattern lives for about one orbit
-    /// there, and fades into the next.
+    /// Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default). Its mean is the smooth
+    /// disk's light. bhr_set_time carries it along, forwards and backwards, at any time to 1e9 M and more.
     pub turbulence: f64,
     /// Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0.
     pub seed: u64,
-    /// BHR_DISK_AT_*. Default AT_MEDIAN; AT_HOTTEST in structs of 0.1.0's size. Since 0.2.0.
+    /// BHR_DISK_AT_*. Default AT_MEDIAN; AT_HOTTEST in structs of 0.1.0's size. @since 0.2.0
     pub reference: BhrDiskReference,
-    /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED. Since 0.2.0.
+    /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED. @since 0.2.0
     pub emission_law: BhrEmissionLaw,
-    /// 0 sharp .. 1, default 0.4. Opacity and light fade to nothing over this share of the way from the inner edge (the
-    /// ISCO, if matter plunges) to the outer one, at its end. Near the ISCO opacity falls with the flux, where that is
-    /// less than this share of the hottest ring's. A disk that inner_radius cuts off outside the hottest ring is sharp
-    /// there. Since 0.2.0.
+    /// 0 sharp .. 1, default 0.4: opacity and light fade to nothing over this share of the way from the inner edge
+    /// to the outer one, at its end, and near the ISCO. A disk that inner_radius cuts off outside the hottest ring
+    /// is sharp there. @since 0.2.0
     pub edge_softness: f64,
 }
 
@@ -153,16 +137,14 @@ impl TryFrom<BhrDisk> for Disk {
     }
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size.
+/// Fills in the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_disk_init(disk: *mut BhrDisk, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
     anywhere("bhr_disk_init", || unsafe { versioned::init(disk, "disk", struct_size) })
 }
 
-/// Sets the disk; NULL: no disk. A new context has the default one. Errors: INVALID_ARGUMENT for a number outside
-/// its range, or an unknown flag, reference or emission_law.
+/// Sets the disk; NULL: no disk. A new context has the default one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_disk(context: *mut BhrContext, disk: *const BhrDisk) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -178,7 +160,7 @@ pub unsafe extern "C" fn bhr_set_disk(context: *mut BhrContext, disk: *const Bhr
 }
 
 /// Reads the disk as it is set. *out_present becomes 1 with a disk; without one it becomes 0, and disk gets the
-/// defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_disk(
     context: *const BhrContext,

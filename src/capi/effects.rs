@@ -26,11 +26,9 @@ const _: () = assert!(
         && BHR_EFFECT_ALL == Effects::ALL
 );
 
-/// Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL. Lensing
-/// itself cannot be switched off. The redshift g = g_gravity g_doppler is split at the local static observers (ZAMO) of
-/// emitter and camera. LIGHT_DELAY shows only where matter is not the same all around: in a turbulent disk, in the
-/// structure of volumes and in hot spots, from inside a spin-0 horizon too; without it, all matter is seen as it is at
-/// the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
+/// Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
+/// Lensing itself cannot be switched off. LIGHT_DELAY shows where matter is not the same all around (turbulence,
+/// structure, hot spots); without it all matter is seen as it is at the time of bhr_set_time. docs/physics.md.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -42,7 +40,7 @@ pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32)
     }
 }
 
-/// The effects as they are set. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL.
+/// Reads the effects as they are set. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects: *mut u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -56,31 +54,15 @@ pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects
     }
 }
 
-/// Sets the scene's time in scene lengths, finite; it turns disk, volumes and spots. Default 0. It is the chart's t
-/// at the camera, which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain
-/// (Painleve-Gullstrand) time T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) +
-/// sqrt(2))), which a clock that falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors:
-/// INVALID_ARGUMENT.
+/// Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the chart's t at the
+/// camera, or, for a camera at or inside a spin-0 horizon, where t ends, rain (Painleve-Gullstrand) time.
+/// bhr_camera_advance tells how both go by (docs/cameras.md).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         on_context("bhr_set_time", context, |state| {
             state.renderer.scene.time = check_finite(time, "time")?;
-            Ok(())
-        })
-    }
-}
-
-/// The time as it is set, scene lengths. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_get_time(context: *const BhrContext, out_time: *mut f64) -> BhrStatus {
-    // SAFETY: NULL or valid, by the header's conventions.
-    unsafe {
-        let time = Out::cleared(out_time);
-        on_context("bhr_get_time", context, |state| {
-            time.required("out_time")?;
-            time.set(state.renderer.scene.time);
             Ok(())
         })
     }

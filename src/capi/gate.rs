@@ -27,7 +27,7 @@ pub(super) struct RunningCallback<'a>(&'a Gate);
 
 impl Gate {
     fn lock(&self) -> MutexGuard<'_, State> {
-        // Nothing under this lock is left half done by a panic.
+        // A panic leaves nothing under this lock half done.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -3,15 +3,13 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::anywhere;
 use super::pointer::{Out, read_vector};
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{OutStruct, Versioned};
 use crate::scene::Hole;
 use crate::scene::query::HoleInfo;
 
-/// Sets the mass M in scene lengths (G = c = 1; the Schwarzschild radius is 2 M): finite, > 0. Default 1.
-/// Errors: INVALID_ARGUMENT.
+/// Sets the mass M in scene lengths, finite and above 0. Default 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_mass(context: *mut BhrContext, mass: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -23,7 +21,7 @@ pub unsafe extern "C" fn bhr_set_mass(context: *mut BhrContext, mass: f64) -> Bh
     }
 }
 
-/// Sets the spin a / M in [-0.999, 0.999]; < 0: the hole turns towards -ph. Default 0. Errors: INVALID_ARGUMENT.
+/// Sets the spin a / M, -0.999 .. 0.999; below 0 the hole turns towards -ph. Default 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_spin(context: *mut BhrContext, spin: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -35,9 +33,7 @@ pub unsafe extern "C" fn bhr_set_spin(context: *mut BhrContext, spin: f64) -> Bh
     }
 }
 
-/// Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. Errors:
-/// INVALID_ARGUMENT.
-///
+/// Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z.
 /// cbindgen:ptrs-as-arrays=[[axis;3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_axis(context: *mut BhrContext, axis: *const f64) -> BhrStatus {
@@ -50,8 +46,7 @@ pub unsafe extern "C" fn bhr_set_axis(context: *mut BhrContext, axis: *const f64
     }
 }
 
-/// Reads the mass, the spin and the axis (a unit vector) as they are set. Errors: INVALID_ARGUMENT for NULL.
-///
+/// Reads the mass, the spin and the axis (a unit vector) as they are set.
 /// cbindgen:ptrs-as-arrays=[[out_axis;3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_hole(
@@ -99,8 +94,7 @@ pub struct BhrHoleInfo {
     pub isco_retrograde: f64,
     /// Spin 0: 3 sqrt(3) M; NaN with spin.
     pub critical_impact_parameter: f64,
-    /// Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
-    /// aberration); NaN with spin.
+    /// Spin 0: angular radius of the shadow as the camera's observer sees it, radians; NaN with spin.
     pub shadow_angular_radius: f64,
     /// Boyer-Lindquist r of the camera.
     pub camera_radius: f64,
@@ -149,16 +143,8 @@ impl From<HoleInfo> for BhrHoleInfo {
     }
 }
 
-/// Clears struct_size bytes and sets struct_size, which calls that fill the struct read. Any thread, inside callbacks
-/// too. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_hole_info_init(info: *mut BhrHoleInfo, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_hole_info_init", || unsafe { versioned::init(info, "info", struct_size) })
-}
-
 /// Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
-/// NaN. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut BhrHoleInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -168,9 +154,9 @@ pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut Bh
     }
 }
 
-/// Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph),
-/// signature - + + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
-///
+/// Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph) of
+/// signature - + + +.
+/// Errors: INVALID_ARGUMENT at the centre and on the horizon.
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_metric;16]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_metric_at(
@@ -189,9 +175,9 @@ pub unsafe extern "C" fn bhr_metric_at(
     }
 }
 
-/// Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist
-/// (t, r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
-///
+/// Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in
+/// Boyer-Lindquist (t, r, th, ph).
+/// Errors: INVALID_ARGUMENT at the centre, on the horizon and on the axis.
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_gamma;64]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_christoffel_at(

@@ -14,22 +14,21 @@ use std::path::PathBuf;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
-/// Bloom adds light and leaves alpha as it is: glare over the host's own picture.
+/// BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is
+/// 1. Bloom adds light and leaves alpha as it is.
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
-/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
-/// 0.2.0.
+/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
+/// @since 0.2.0
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
-/// BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: the host has drawn the things where bent
-/// light shows them (BhrProjectedPoint.apparent), so bhr compares their distances with those along bent rays. Without
-/// it the things lie on straight lines of sight. Since 0.2.0.
+/// BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: the host has drawn the things where
+/// bent light shows them (BhrProjectedPoint.apparent). Without it they lie on straight lines of sight. @since 0.2.0
 pub const BHR_IMAGE_LENSED: u32 = 4u32;
 
-/// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring
-/// that BhrDisk.reference names, if the disk's brightness is 1.
+/// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring that BhrDisk.reference
+/// names, if the disk's brightness is 1.
 pub type BhrFormat = i32;
 /// 4 bytes: red, green, blue with the sRGB curve, alpha.
 pub const BHR_FORMAT_RGBA8_SRGB: BhrFormat = 1;
@@ -42,12 +41,10 @@ pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
 /// 1 float: the value of a view or an output, or the distance of an occluder.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
 
-/// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
-/// side or interleaved; different contexts may then render them at the same time.
-///
-/// For rows from the bottom up, use BHR_IMAGE_BOTTOM_UP. A negative row_stride with pixels at the last row of the
-/// block means the same. Beware: if pixels is left at the beginning of the block, all rows but one are written in
-/// front of it, and no check can find that.
+/// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by side
+/// or interleaved; different contexts may then render them at the same time. Rows from the bottom up are best asked
+/// for by BHR_IMAGE_BOTTOM_UP. A negative row_stride with pixels at the last row of the block means the same; if
+/// pixels is left at the block's beginning, rows are written in front of it, and no check can find that.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrImage {
@@ -61,15 +58,15 @@ pub struct BhrImage {
     pub height: u32,
     /// The top-left pixel; with BHR_IMAGE_BOTTOM_UP the bottom-left one. Aligned to its channel: 1, 2 or 4 bytes.
     pub pixels: *mut c_void,
-    /// Bytes to the next row down, with BHR_IMAGE_BOTTOM_UP to the next row up; a multiple of the channel's size. 0
-    /// (default): packed. < 0: the next row down lies lower in memory, and pixels is the block's last row; not together
-    /// with BHR_IMAGE_BOTTOM_UP. |row_stride| must hold a row.
+    /// Bytes to the next row down, with BHR_IMAGE_BOTTOM_UP to the next row up; a multiple of the channel's size, of
+    /// which |row_stride| must hold a row. 0 (default): packed. < 0: the next row down lies lower in memory, and
+    /// pixels is the block's last row; not together with BHR_IMAGE_BOTTOM_UP.
     pub row_stride: i64,
     /// Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
     /// |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
     pub byte_size: u64,
-    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only, and
-    /// BHR_IMAGE_LENSED is for bhr_set_occluder only: elsewhere it is INVALID_ARGUMENT.
+    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only;
+    /// BHR_IMAGE_LENSED is for bhr_set_occluder only, and elsewhere INVALID_ARGUMENT.
     pub flags: u32,
     /// Reserved: 0.
     pub reserved: u32,
@@ -156,7 +153,7 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Host
     unsafe { read_with(image, name, 0) }
 }
 
-/// As [`read`], of an image that may have the flags `also` as well.
+/// [`read`] of an image that may have the flags `also` as well.
 ///
 /// # Safety
 /// As [`read`].
@@ -175,8 +172,7 @@ pub(super) unsafe fn read_with<'a>(image: *const BhrImage, name: &str, also: u32
     Ok(HostImage { pixels, transparent, lensed })
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size.
+/// Fills in the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_init(image: *mut BhrImage, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
@@ -206,15 +202,13 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 }
 
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
-/// grey. Alpha is written as it is. The file is written as .bhr-*.tmp in the same folder, brought to the disk
-/// (fsync), then renamed, so that it appears whole or not at all. A file that is replaced keeps its mode, and its
-/// owner where the process may set it; where its group cannot be kept, the mode loses the group's rights. Where path
-/// is a symbolic link, its target is written. Other hard links keep the old picture. A process that is killed leaves
-/// the temporary file. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for a bad image or NULL;
-/// UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was built
-/// without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for an older file that this process may not
-/// write, for another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk,
-/// a quota and RLIMIT_FSIZE (without SIGXFSZ).
+/// grey. Alpha is written as it is. The file appears whole or not at all; one that is replaced keeps its mode and,
+/// where the process may set it, its owner, and where path is a symbolic link, its target is written
+/// (docs/files.md).
+/// Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
+/// built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
+/// another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
+/// quota.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_char) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -225,16 +219,11 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 }
 
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
-/// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
-/// level of the first part with channels R, G and B is read and cut to the display window; pixels that the data window
-/// does not cover are 0. Headers may have 8 MiB, and a part 4096 channels. A block, whose channels are all unpacked
-/// together, may have 64 MiB, or four times the bytes of the image if those are more, but at most 256 MiB; all blocks
-/// that reach the display window may have 1 GiB, or four times the bytes of the image if those are more. Deep data and
-/// subsampling are IO. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside
-/// callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions
-/// DWA and HTJ2K, or in a library that was built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not
-/// readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
-/// file is. What a file claims is checked before memory is taken for it.
+/// down, RGBA8_SRGB of 8-bit files, RGBA32F of others (16-bit files are made linear). The pixels are the library's:
+/// give them back with bhr_image_release, once. docs/files.md says how files are read, and the bounds that are held.
+/// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR; IO for
+/// a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels
+/// in memory. What a file claims is checked before memory is taken for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -275,8 +264,8 @@ fn keep(mut loaded: Loaded) {
     kept().insert(loaded.pixels.as_mut_ptr().addr(), loaded);
 }
 
-/// Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside
-/// callbacks too. Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
+/// Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0.
+/// Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_release(image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -3,10 +3,10 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, outside_callbacks};
+use super::entry::outside_callbacks;
 use super::pointer::Out;
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{OutStruct, Versioned};
 use crate::error::{Error, ErrorKind, Result};
 use crate::tracers;
 
@@ -25,14 +25,13 @@ pub const BHR_HANDLE_D3D11_TEXTURE: BhrHandleType = 16u32;
 /// macOS, iOS: an IOSurfaceRef as memory, an MTLSharedEvent as semaphore. Not built in yet.
 pub const BHR_HANDLE_APPLE: BhrHandleType = 32u32;
 /// The host's own pixels, for bhr_target_import of buffers: BhrHandle.handle is their address. Address and
-/// allocation_size are multiples of the device's minImportedHostPointerAlignment (4096 or 65536). The GPU writes
-/// them over the bus, and nobody copies: for hosts that use the same pixels again and again, as the import takes
-/// some ms. They stay the host's; they must stay mapped until the target is destroyed and its frames are done, and
-/// are read after the frame's job or signal.
+/// allocation_size are multiples of the device's minImportedHostPointerAlignment (4096 or 65536). They stay the
+/// host's, must stay mapped until the target is destroyed and its frames are done, and are read after the frame's
+/// job or signal. docs/gpu.md.
 pub const BHR_HANDLE_HOST_POINTER: BhrHandleType = 64u32;
 
-/// The ways in which a context's device can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a driver
-/// without the extensions; use bhr_render_image. Since 0.2.0.
+/// The ways in which a context's device can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a
+/// driver without the extensions; use bhr_render_image. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrInteropInfo {
@@ -84,15 +83,7 @@ unsafe impl Versioned for BhrInteropInfo {
     }
 }
 
-/// Sets struct_size, as bhr_hole_info_init does. Since 0.2.0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_interop_info_init(info: *mut BhrInteropInfo, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_interop_info_init", || unsafe { versioned::init(info, "info", struct_size) })
-}
-
-/// Fills in info for the context's device. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL or a
-/// wrong struct_size; DEVICE_LOST. Since 0.2.0.
+/// Fills in info for the context's device. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_interop_info(context: *const BhrContext, info: *mut BhrInteropInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -131,8 +122,8 @@ unsafe fn read_id<const N: usize>(pointer: *const u8) -> Option<[u8; N]> {
 /// Finds the adapter to make a context on so that it can share with the host's device, for
 /// BhrContextOptions.adapter_index (bhr_context_options_init sets the others). uuid is a deviceUUID of 16 bytes or
 /// NULL, luid a LUID of 8 bytes or NULL; one of them at least is given, and both count that are. *out_index is -1
-/// after an error. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL; NO_ADAPTER when bhr has
-/// none through Vulkan on that device. Since 0.2.0.
+/// after an error.
+/// Errors: NO_ADAPTER when bhr has none through Vulkan on that device. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_find(uuid: *const u8, luid: *const u8, out_index: *mut i32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -3,7 +3,6 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::anywhere;
 use super::interop_semaphore::BhrSemaphore;
 use super::interop_target::BhrTarget;
 use super::job::{self, BhrJob};
@@ -18,7 +17,7 @@ use crate::renderer::{HostSync, Renderer, Submits};
 use crate::scene::Region;
 use std::ptr::null;
 
-/// A semaphore and a value of it. Since 0.2.0.
+/// A semaphore and a value of it. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrSemaphoreValue {
@@ -28,8 +27,8 @@ pub struct BhrSemaphoreValue {
     pub value: u64,
 }
 
-/// The semaphores that a frame waits for before it reads the targets of occluder and sky and writes its own, and those
-/// that it signals when it has done both. Since 0.2.0.
+/// The semaphores that a frame waits for before it reads the targets of occluder and sky and writes its own, and
+/// those that it signals when it has done both. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrSync {
@@ -131,30 +130,14 @@ unsafe fn render_target(
     }
 }
 
-/// Sets struct_size, as bhr_hole_info_init does: nothing is waited for or signalled. Since 0.2.0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_sync_init(sync: *mut BhrSync, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_sync_init", || unsafe { versioned::init(sync, "sync", struct_size) })
-}
-
-/// Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will
-/// make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
-/// than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
-/// being submitted, for programs that are compiled (bhr_prepare), and, with Mesa's llvmpipe, for the waits of
-/// earlier frames. sync NULL: no semaphores; then the host waits with the job. out_job NULL: no job; else the job
-/// ends when the GPU has made the frame, with bhr_job_wait and bhr_job_stats as of images. bhr_job_cancel does not
-/// stop what is submitted, and bhr_job_destroy neither cancels it nor waits for it. At most 64 frames and jobs of a
-/// context may be unfinished. The region (bhr_set_region) counts. Buffers, in every format, and images of BGRA8 are
-/// written by the kernels of bhr_render_image and get its bytes. Other images have kernels of their own, which a
-/// driver may round otherwise: a few pixels differ by a step of 8 bits, or by some units in the last place of a
-/// half float. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for
-/// a target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
-/// grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach,
-/// and where BhrCamera.eye has effect; SURFACE_LOST for a target or semaphore whose context was recovered;
-/// DEVICE_LOST. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.
-/// The GPU makes frames in the order of their submission: one that waits for the signal of a frame or job that is
-/// submitted after it waits for ever, and the device counts as lost after 60 s. Since 0.2.0.
+/// Renders the scene as it is now into a target, and returns when the frame is submitted (docs/gpu.md). sync NULL:
+/// no semaphores; then the host waits with the job. out_job NULL: no job; else the job ends when the GPU has made
+/// the frame, with bhr_job_wait and bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and
+/// bhr_job_destroy neither cancels it nor waits for it. At most 64 frames and jobs may be unfinished. The region
+/// counts. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.
+/// Errors: those of bhr_render_image; INVALID_ARGUMENT for a target or semaphore of another context, a semaphore
+/// that is twice in a list, and a signal whose value does not grow; INVALID_STATE for too many frames; UNSUPPORTED
+/// for rows that kernels do not reach, and where BhrCamera.eye has effect; SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target(
     context: *mut BhrContext,
@@ -166,14 +149,13 @@ pub unsafe extern "C" fn bhr_render_target(
     unsafe { render_target("bhr_render_target", context, target, sync, out_job, Submits::Now) }
 }
 
-/// The same as a job of bhr's threads, in their order, as bhr_render_image_async: the scene, the region and the
-/// semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
-/// INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel
-/// stops what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its
-/// turn comes, unless the device is lost. A host on whose own queue bhr works (bhr_context_create_vulkan) must not
-/// submit to that queue what waits for a frame before the frame is submitted, because a queue goes in order: it
-/// waits on the CPU first, or uses bhr_render_target. bhr_job_destroy neither cancels nor waits. out_job NULL: no
-/// job. Errors: as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
+/// bhr_render_target as a job of bhr's threads, in their order, as bhr_render_image_async: the scene, the region and
+/// the semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
+/// INVALID_ARGUMENT. bhr_job_cancel stops what is not submitted, and bhr_job_destroy neither cancels nor waits.
+/// Whatever becomes of the frame, its semaphores are waited for and signalled when its turn comes, unless the device
+/// is lost. A host on whose own queue bhr works must not submit to that queue what waits for a frame before the
+/// frame is submitted (docs/gpu.md). out_job NULL: no job.
+/// Errors: those of bhr_render_target, some of which come from bhr_job_wait instead. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target_async(
     context: *mut BhrContext,
@@ -186,17 +168,14 @@ pub unsafe extern "C" fn bhr_render_target_async(
 }
 
 /// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target or its
-/// BhrOutput.image, in one frame and with one set of semaphores. Otherwise as bhr_render_target; the bytes are those of
-/// bhr_render_outputs. LIGHT, at most one, goes into any target that bhr_render_target takes, the others into R32F or
-/// RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage. All places are of one size. Views but REDSHIFT,
-/// ORDER and DEFLECTION take frames of their own: set them (bhr_set_view) and render them as LIGHT. An output with an
-/// image goes into the host's memory, and is complete when bhr_job_wait says OK: signals tell of targets only, so
-/// out_job is not NULL then. The call waits for no semaphore. Images are written until the job is done or destroyed;
-/// bhr_job_destroy does not wait for the frame, which goes on without them. Until it has run, the device holds their
-/// bytes once more. Errors: those of bhr_render_target, of any of the targets, and of bhr_render_outputs;
-/// INVALID_ARGUMENT for an output without a place, or with two, an image without out_job, a target that is there twice,
-/// a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills (without
-/// STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since 0.2.0.
+/// BhrOutput.image, in one frame and with one set of semaphores. Otherwise as bhr_render_target; the bytes are those
+/// of bhr_render_outputs. LIGHT, at most one, goes into any target that bhr_render_target takes, the others into
+/// R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage. All places are of one size. Outputs with
+/// an image need out_job, and are complete when bhr_job_wait says OK (docs/gpu.md).
+/// Errors: those of bhr_render_target and of bhr_render_outputs; INVALID_ARGUMENT for an output without a place, or
+/// with two, a target that is there twice, and views but REDSHIFT, ORDER and DEFLECTION (render them as LIGHT);
+/// UNSUPPORTED for an output other than LIGHT in an image that a copy fills, and for more targets than a kernel of
+/// the device binds. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs_shared(
     context: *mut BhrContext,
@@ -215,8 +194,8 @@ pub unsafe extern "C" fn bhr_render_outputs_shared(
     }
 }
 
-/// The same as a job of bhr's threads, with TIMELINE semaphores only: to bhr_render_outputs_shared as
-/// bhr_render_target_async is to bhr_render_target. Errors: those of both. Since 0.2.0.
+/// bhr_render_outputs_shared as a job of bhr's threads, with TIMELINE semaphores only, as bhr_render_target_async.
+/// Errors: those of both. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs_shared_async(
     context: *mut BhrContext,

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// A semaphore that both sides reach. It belongs to its context; end it with bhr_semaphore_destroy, before or after
-/// the context. Any thread may call.
+/// the context.
 pub struct BhrSemaphore {
     pub(super) semaphore: Arc<Semaphore>,
     sink: Option<Arc<Sink>>,
@@ -28,7 +28,7 @@ pub struct BhrSemaphore {
 
 /// A semaphore's kind.
 pub type BhrSemaphoreKind = i32;
-/// It has a value, which grows: Vulkan, CUDA, GL_NV_timeline_semaphore.
+/// Has a value, which grows: Vulkan, CUDA, GL_NV_timeline_semaphore.
 pub const BHR_SEMAPHORE_TIMELINE: BhrSemaphoreKind = 0;
 /// Each signal is waited for exactly once, after it was submitted: Vulkan, OpenGL.
 pub const BHR_SEMAPHORE_BINARY: BhrSemaphoreKind = 1;
@@ -88,9 +88,8 @@ pub(super) unsafe fn make(
 
 /// Makes a semaphore: of value 0, or not signalled. handle_type is the one handle that it is exported by; 0: none,
 /// for hosts on the same VkDevice, and for bhr_semaphore_wait. End *out_semaphore with bhr_semaphore_destroy.
-/// Errors: INVALID_ARGUMENT for NULL, an unknown kind or handle_type; UNSUPPORTED for a handle that such semaphores
-/// are not exported by here, and always on the CPU tracer, OpenGL, Metal and Direct3D 12; OUT_OF_MEMORY;
-/// DEVICE_LOST. Since 0.2.0.
+/// Errors: UNSUPPORTED for a handle that such semaphores are not exported by here, and always on the CPU tracer,
+/// OpenGL, Metal and Direct3D 12. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_create(
     context: *mut BhrContext,
@@ -112,8 +111,8 @@ pub unsafe extern "C" fn bhr_semaphore_create(
     }
 }
 
-/// Gives a new handle of a semaphore, which is the host's: to be imported by what takes it over, or closed. Errors:
-/// INVALID_ARGUMENT for NULL; INVALID_STATE for one that was not made for export; SURFACE_LOST. Since 0.2.0.
+/// Gives a new handle of a semaphore, which is the host's: to be imported by what takes it over, or closed.
+/// Errors: INVALID_STATE for one that was not made for export; SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_export(semaphore: *mut BhrSemaphore, out_handle: *mut BhrHandle) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -129,8 +128,9 @@ pub unsafe extern "C" fn bhr_semaphore_export(semaphore: *mut BhrSemaphore, out_
 }
 
 /// Makes a semaphore of one of the host's, which is of this kind. The descriptor in handle is bhr's after OK, and
-/// the host's after an error. Errors: as bhr_semaphore_create; INVALID_ARGUMENT also for a descriptor that is not
-/// open or is no semaphore. Since 0.2.0.
+/// the host's after an error.
+/// Errors: those of bhr_semaphore_create; INVALID_ARGUMENT also for a descriptor that is not open or is no
+/// semaphore. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_import(
     context: *mut BhrContext,
@@ -160,8 +160,8 @@ pub unsafe extern "C" fn bhr_semaphore_import(
     status
 }
 
-/// Gives the VkSemaphore to a host on the same VkDevice. It lives as long as the semaphore does. Errors:
-/// INVALID_ARGUMENT for NULL; SURFACE_LOST. Since 0.2.0.
+/// Gives the VkSemaphore to a host on the same VkDevice. It lives as long as the semaphore does.
+/// Errors: SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_vulkan(semaphore: *const BhrSemaphore, out_semaphore: *mut u64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -176,8 +176,8 @@ pub unsafe extern "C" fn bhr_semaphore_vulkan(semaphore: *const BhrSemaphore, ou
 }
 
 /// Waits on the CPU until a TIMELINE has reached value, at most timeout_ns nanoseconds: 0 looks, UINT64_MAX waits
-/// without limit. NOT_READY: it has not. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED for a BINARY one;
-/// SURFACE_LOST when the context ends meanwhile; DEVICE_LOST. Since 0.2.0.
+/// without limit. NOT_READY: it has not.
+/// Errors: UNSUPPORTED for a BINARY one; SURFACE_LOST when the context ends meanwhile. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_wait(semaphore: *mut BhrSemaphore, value: u64, timeout_ns: u64) -> BhrStatus {
     let time = (timeout_ns != u64::MAX).then(|| Duration::from_nanos(timeout_ns));
@@ -189,9 +189,9 @@ pub unsafe extern "C" fn bhr_semaphore_wait(semaphore: *mut BhrSemaphore, value:
     }
 }
 
-/// Signals a TIMELINE on the CPU. Errors: INVALID_ARGUMENT for NULL, and for a value that is not greater than the
-/// present one, or not smaller than one that a frame under way will signal; UNSUPPORTED for a BINARY one;
-/// SURFACE_LOST; DEVICE_LOST. Since 0.2.0.
+/// Signals a TIMELINE on the CPU.
+/// Errors: INVALID_ARGUMENT for a value that is not greater than the present one, or not smaller than one that a
+/// frame under way will signal; UNSUPPORTED for a BINARY one; SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_signal(semaphore: *mut BhrSemaphore, value: u64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn bhr_semaphore_signal(semaphore: *mut BhrSemaphore, valu
 
 /// Ends a semaphore and returns at once; bhr keeps it for the frames that were submitted with it. NULL is a no-op;
 /// its context may be gone. No other thread may use it any more. From inside a callback it does nothing:
-/// bhr_error_message then says so. Since 0.2.0.
+/// bhr_error_message then says so. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_destroy(semaphore: *mut BhrSemaphore) {
     const NAME: &str = "bhr_semaphore_destroy";

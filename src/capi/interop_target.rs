@@ -23,7 +23,7 @@ use std::ptr::null_mut;
 use std::sync::Arc;
 
 /// A picture on the GPU that both sides reach. It belongs to its context; end it with bhr_target_destroy, before or
-/// after the context. Any thread may call; frames into one target take turns.
+/// after the context. Frames into one target take turns.
 pub struct BhrTarget {
     pub(super) target: Arc<Target>,
     sink: Option<Arc<Sink>>,
@@ -42,7 +42,7 @@ pub const BHR_TARGET_BUFFER: BhrTargetKind = 1;
 /// GPU, so that it needs TRANSFER_DST usage instead of STORAGE: any tiling, images of swapchains, BGRA8_SRGB.
 pub const BHR_TARGET_COPY: u32 = 0x100u32;
 
-/// A target. Its first row is the picture's top one. Fill in with bhr_target_options_init first. Since 0.2.0.
+/// A target. Its first row is the picture's top one. Fill in with bhr_target_options_init first. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrTargetOptions {
@@ -50,9 +50,9 @@ pub struct BhrTargetOptions {
     pub struct_size: u32,
     /// Default IMAGE.
     pub kind: BhrTargetKind,
-    /// BHR_FORMAT_*. Default RGBA8_SRGB: an image is VK_FORMAT_R8G8B8A8_UNORM and holds sRGB codes, and the host
-    /// may view it as _SRGB, because images are made with MUTABLE_FORMAT. Images of BGRA8_SRGB are filled by a copy
-    /// on the GPU.
+    /// BHR_FORMAT_*. Default RGBA8_SRGB: an image is VK_FORMAT_R8G8B8A8_UNORM and holds sRGB codes, and the host may
+    /// view it as _SRGB, because images are made with MUTABLE_FORMAT. Images of BGRA8_SRGB are filled by a copy on
+    /// the GPU.
     pub format: BhrFormat,
     /// Pixels, 1 .. 2^20.
     pub width: u32,
@@ -137,15 +137,14 @@ impl BhrTargetOptions {
     }
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size. Since 0.2.0.
+/// Fills in the defaults. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_options_init(options: *mut BhrTargetOptions, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
     anywhere("bhr_target_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// The numbers with which the other side imports a target. Since 0.2.0.
+/// The numbers with which the other side imports a target. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrTargetInfo {
@@ -207,7 +206,7 @@ unsafe impl Versioned for BhrTargetInfo {
     }
 }
 
-/// A handle on its way. Since 0.2.0.
+/// A handle on its way. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrHandle {
@@ -284,10 +283,10 @@ pub(super) unsafe fn make(
     }
 }
 
-/// Makes a target in memory of bhr's. End *out_target with bhr_target_destroy. Errors: INVALID_ARGUMENT for NULL, a
-/// bad option, or a layout that an image cannot be left in; UNSUPPORTED for what the device cannot make or share
-/// (format, kind, handle_type or side, which the message says), and always on the CPU tracer, OpenGL, Metal and
-/// Direct3D 12; OUT_OF_MEMORY; DEVICE_LOST. Since 0.2.0.
+/// Makes a target in memory of bhr's. End *out_target with bhr_target_destroy.
+/// Errors: INVALID_ARGUMENT also for a layout that an image cannot be left in; UNSUPPORTED for what the device
+/// cannot make or share (format, kind, handle_type or side, which the message says), and always on the CPU tracer,
+/// OpenGL, Metal and Direct3D 12. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_create(
     context: *mut BhrContext,
@@ -298,13 +297,14 @@ pub unsafe extern "C" fn bhr_target_create(
     unsafe { make("bhr_target_create", context, options, out_target, false, |_, _, _| Ok(TargetOrigin::New)) }
 }
 
-/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's), memory
-/// what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags and
-/// vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the target's size
-/// and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST. OPAQUE_FD: the
-/// descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and dedicated do not count.
-/// Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or is no memory, and for
-/// memory that is too small, ill placed, or of a type that the target cannot have. Since 0.2.0.
+/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's),
+/// memory what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags
+/// and vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the
+/// target's size and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST.
+/// OPAQUE_FD: the descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and
+/// dedicated do not count.
+/// Errors: those of bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or is no memory, and
+/// for memory that is too small, ill placed, or of a type that the target cannot have. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_import(
     context: *mut BhrContext,
@@ -369,15 +369,7 @@ pub(super) fn close(fd: i32) {
     let _ = fd;
 }
 
-/// Sets struct_size, as bhr_hole_info_init does. Since 0.2.0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_target_info_init(info: *mut BhrTargetInfo, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_target_info_init", || unsafe { versioned::init(info, "info", struct_size) })
-}
-
-/// Fills in info. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. Since
-/// 0.2.0.
+/// Fills in info. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_info(target: *const BhrTarget, info: *mut BhrTargetInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -407,8 +399,8 @@ pub unsafe extern "C" fn bhr_target_info(target: *const BhrTarget, info: *mut Bh
 }
 
 /// Gives a new handle of the target's memory, which is the host's: to be imported by what takes it over, or closed.
-/// The memory lives until both sides have let go of it. Errors: INVALID_ARGUMENT for NULL; INVALID_STATE for a
-/// target that was not made for export; SURFACE_LOST; DEVICE_LOST. Since 0.2.0.
+/// The memory lives until both sides have let go of it.
+/// Errors: INVALID_STATE for a target that was not made for export; SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_export(target: *mut BhrTarget, out_handle: *mut BhrHandle) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -424,7 +416,8 @@ pub unsafe extern "C" fn bhr_target_export(target: *mut BhrTarget, out_handle: *
 }
 
 /// Gives the VkImage or the VkBuffer of a target, and 0 for the other, to a host on the same VkDevice. They live as
-/// long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since 0.2.0.
+/// long as the target does. NULL: not wanted.
+/// Errors: SURFACE_LOST. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_vulkan(
     target: *const BhrTarget,
@@ -445,7 +438,7 @@ pub unsafe extern "C" fn bhr_target_vulkan(
 
 /// Ends a target and returns at once; its memory goes when the GPU has done with it. NULL is a no-op; its context
 /// may be gone. No other thread may use the target any more. From inside a callback it does nothing:
-/// bhr_error_message then says so. Since 0.2.0.
+/// bhr_error_message then says so. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_destroy(target: *mut BhrTarget) {
     const NAME: &str = "bhr_target_destroy";

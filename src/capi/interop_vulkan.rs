@@ -3,7 +3,7 @@
 
 use super::callback::InsideCallback;
 use super::context::{self, BhrContext, BhrContextOptions};
-use super::entry::{anywhere, outside_callbacks};
+use super::entry::outside_callbacks;
 use super::interop_semaphore::{self, BhrSemaphore, BhrSemaphoreKind};
 use super::interop_target::{self, BHR_TARGET_COPY, BhrTarget, BhrTargetOptions};
 use super::log::User;
@@ -25,8 +25,8 @@ pub type BhrQueueLockFn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 /// must not call bhr.
 pub type BhrReleaseFn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
-/// The needs of bhr on an instance and a device of the host's. All that it points to is the library's and
-/// never freed. Since 0.2.0.
+/// The needs of bhr on an instance and a device of the host's. All that it points to is the library's and never
+/// freed. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrVulkanRequirements {
@@ -66,7 +66,7 @@ unsafe impl Versioned for BhrVulkanRequirements {
     }
 }
 
-/// A Vulkan device of the host's. Cleared (memset) and filled in by the host. Since 0.2.0.
+/// A Vulkan device of the host's. Cleared (memset) and filled in by the host. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrVulkanDevice {
@@ -94,11 +94,10 @@ pub struct BhrVulkanDevice {
     pub instance_extension_count: u32,
     /// How many.
     pub device_extension_count: u32,
-    /// Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle), from
-    /// any thread, never nested. The host takes the same lock around its own use of the queue, and around
-    /// vkDeviceWaitIdle; it must not hold it while it calls bhr. Never held while bhr waits for the GPU, but in
-    /// bhr_context_destroy and after errors. NULL, both: nobody else uses the queue while a bhr_ call of this context
-    /// runs or a job of it is unfinished, because those submit frames from a thread of bhr's.
+    /// Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle),
+    /// from any thread, never nested. The host takes the same lock around its own use of the queue, and around
+    /// vkDeviceWaitIdle; it must not hold it while it calls bhr. NULL, both: nobody else uses the queue while a bhr_
+    /// call of this context runs or a job of it is unfinished. docs/gpu.md.
     pub lock: BhrQueueLockFn,
     /// See lock.
     pub unlock: BhrQueueLockFn,
@@ -184,22 +183,12 @@ fn loader(function: BhrGetInstanceProcAddr) -> *const c_void {
     function.map_or(null(), |function| function as *const c_void)
 }
 
-/// Sets struct_size, as bhr_hole_info_init does. Since 0.2.0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_vulkan_requirements_init(
-    requirements: *mut BhrVulkanRequirements,
-    struct_size: usize,
-) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_vulkan_requirements_init", || unsafe { versioned::init(requirements, "requirements", struct_size) })
-}
-
 /// Says what bhr needs; physical_device NULL: of an instance only, and then instance may be NULL too. instance must
 /// have been made with instance_extensions and api_version. A device that was made with all features and extensions
-/// that the physical device has serves as well. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for
-/// NULL, a wrong struct_size, a function that finds no functions, or a physical device that is not the instance's;
+/// that the physical device has serves as well.
+/// Errors: INVALID_ARGUMENT for a function that finds no functions, or a physical device that is not the instance's;
 /// UNSUPPORTED, with the reason, for a physical device that cannot serve (Vulkan before 1.2, a first queue family
-/// without GRAPHICS, too low limits), and on macOS and iOS. Since 0.2.0.
+/// without GRAPHICS, too low limits), and on macOS and iOS. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_vulkan_requirements(
     get_instance_proc_addr: BhrGetInstanceProcAddr,
@@ -276,22 +265,14 @@ unsafe fn host_of(given: &BhrVulkanDevice) -> Result<HostVulkan> {
     })
 }
 
-/// Sets struct_size, as bhr_hole_info_init does. Since 0.2.0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_vulkan_device_init(device: *mut BhrVulkanDevice, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_vulkan_device_init", || unsafe { versioned::init(device, "device", struct_size) })
-}
-
 /// Makes a context, as bhr_context_create does, that works on a device of the host's: its frames go into the host's
-/// own images. The device must have what bhr_vulkan_requirements says; a missing extension is found, and named, but
-/// a missing feature cannot be: run once with VK_LAYER_KHRONOS_validation. Instance, device and queue must live
-/// until the release callback, or, without one, until bhr_context_destroy has returned. Other devices should not be
-/// created meanwhile on other threads (NVIDIA's driver may hang). options: backend AUTO or VULKAN, adapter_index
-/// -1, no BHR_CONTEXT_VALIDATION, compatible_window NULL; NULL means all defaults. bhr_context_recover is
-/// UNSUPPORTED on such a context: after DEVICE_LOST destroy it, and make the device anew. Errors: as
-/// bhr_context_create; INVALID_ARGUMENT for what is not as it must be; UNSUPPORTED for a device that cannot serve.
-/// Since 0.2.0.
+/// own images. The device must have what bhr_vulkan_requirements says; a missing extension is found, and named, a
+/// missing feature cannot be. Instance, device and queue must live until the release callback, or, without one,
+/// until bhr_context_destroy has returned. options: backend AUTO or VULKAN, adapter_index -1, no
+/// BHR_CONTEXT_VALIDATION, compatible_window NULL; NULL means all defaults. bhr_context_recover is UNSUPPORTED on
+/// such a context: after DEVICE_LOST destroy it, and make the device anew. docs/gpu.md.
+/// Errors: those of bhr_context_create; INVALID_ARGUMENT for what is not as it must be; UNSUPPORTED for a device
+/// that cannot serve. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create_vulkan(
     abi_version: u32,
@@ -316,11 +297,12 @@ pub unsafe extern "C" fn bhr_context_create_vulkan(
 /// Makes a target of a VkImage of a host whose device the context is on. The image: 2-D, one sample, one mip level
 /// and layer, of the size and format of options (RGBA8_SRGB: R8G8B8A8_UNORM; BGRA8_SRGB: B8G8R8A8_UNORM, with
 /// BHR_TARGET_COPY), SHARING_MODE_EXCLUSIVE or concurrent with bhr's family. vk_usage is what it was created with:
-/// STORAGE, or TRANSFER_DST for BHR_TARGET_COPY. options->kind is IMAGE and handle_type 0; frames leave the image
-/// in options->layout, in bhr's queue family, and take it from any layout, without its contents. release, unless
-/// NULL, is called when bhr uses the image no more; without one the image must live until bhr_context_destroy has
-/// returned. Errors: INVALID_ARGUMENT; INVALID_STATE for a context that is not on a host's device; UNSUPPORTED for
-/// an image that the device does not have so; DEVICE_LOST. release is not called after an error. Since 0.2.0.
+/// STORAGE, or TRANSFER_DST for BHR_TARGET_COPY. options->kind is IMAGE and handle_type 0; frames leave the image in
+/// options->layout, in bhr's queue family, and take it from any layout, without its contents. release, unless NULL,
+/// is called when bhr uses the image no more; without one the image must live until bhr_context_destroy has
+/// returned.
+/// Errors: INVALID_STATE for a context that is not on a host's device; UNSUPPORTED for an image that the device does
+/// not have so. release is not called after an error. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_wrap_vulkan(
     context: *mut BhrContext,
@@ -355,8 +337,8 @@ pub unsafe extern "C" fn bhr_target_wrap_vulkan(
 
 /// Makes a semaphore of a VkSemaphore of a host whose device the context is on, which is of this kind. It must live
 /// until bhr_context_destroy has returned, or until the semaphore is destroyed and every frame that uses it has
-/// ended. Errors: INVALID_ARGUMENT; INVALID_STATE for a context that is not on a host's device; DEVICE_LOST. Since
-/// 0.2.0.
+/// ended.
+/// Errors: INVALID_STATE for a context that is not on a host's device. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_semaphore_wrap_vulkan(
     context: *mut BhrContext,

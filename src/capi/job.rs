@@ -23,8 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// A frame that is rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after
-/// its context.
+/// A frame that is rendered in the background. End it with bhr_job_destroy, before or after its context.
 pub struct BhrJob {
     pub(super) job: Job,
     progress: Option<Callback>,
@@ -110,12 +109,11 @@ pub(super) fn new_job(context: &BhrContext, job: Job, state: &State) -> *mut Bhr
 }
 
 /// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
-/// as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
-/// order, by a thread of the library, several under way at a time: one is copied to the host while the next is
-/// traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
-/// unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
-/// valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
-/// bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
+/// as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their order;
+/// other calls that render wait for the job that is being traced. At most 64 jobs of a context may be unfinished.
+/// target itself is copied; target->pixels is written until the job is done or destroyed, and must stay valid, and
+/// be used by nobody else, so long. End *out_job with bhr_job_destroy. docs/jobs.md.
+/// Errors: those of bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image_async(
     context: *mut BhrContext,
@@ -139,12 +137,10 @@ pub unsafe extern "C" fn bhr_render_image_async(
 
 /// Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
 /// it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
-/// 1, and 0 after a failure: 0 until its turn has come; then by tiles, of which a small frame is one. A tile counts
-/// half once the GPU has it, and wholly once its pixels are there; frames on the CPU and with GL, and those of
-/// bhr_render_outputs, begin at 0.01. Meanwhile the progress callback that the context had when the job was begun is
-/// called, on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
-/// bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
-/// bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
+/// 1, by tiles, of which a small frame is one (docs/jobs.md), and 0 after a failure. Meanwhile the progress callback
+/// that the context had when the job was begun is called, on this thread.
+/// Errors: the job's failure, with its message, each time, which says so if pixels were written: CANCELLED after
+/// bhr_job_cancel or by the progress callback, others as bhr_render_image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fraction: *mut f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -156,7 +152,7 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
 
 /// Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
 /// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its
-/// length, 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+/// length, 0 for NULL. It waits for no other call. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut c_char, size: usize) -> usize {
     // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
@@ -164,7 +160,7 @@ pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut 
 }
 
 /// Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.
-/// NULL is a no-op. Any thread, inside callbacks too.
+/// NULL is a no-op. Allowed inside callbacks.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     // SAFETY: NULL or alive, by the header's conventions.

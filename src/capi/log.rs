@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// How much a log callback is told: messages of this level and of the more severe ones.
 pub type BhrLogLevel = i32;
-/// Nothing.
+/// No messages.
 pub const BHR_LOG_OFF: BhrLogLevel = 0;
 /// Every failed call, but for cancels, and errors of the graphics stack.
 pub const BHR_LOG_ERROR: BhrLogLevel = 1;
@@ -30,11 +30,10 @@ pub const BHR_LOG_DEBUG: BhrLogLevel = 4;
 pub const BHR_LOG_TRACE: BhrLogLevel = 5;
 
 /// Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives for
-/// the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on whichever
-/// thread the call runs, or on a thread of the library that works for that context; one from another thread goes to
-/// every context's callback. It may therefore run on several threads at once. It must not throw, unwind or longjmp.
-/// Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads' calls on other
-/// contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
+/// the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
+/// whichever thread the call runs, or on a thread of the library that works for that context; one from another
+/// thread goes to every context's callback: it may therefore run on several threads at once. It may wait for other
+/// threads' calls on other contexts, not for calls on its own.
 pub type BhrLogFn = Option<unsafe extern "C" fn(user: *mut c_void, level: BhrLogLevel, message: *const c_char)>;
 
 /// A non-null [`BhrLogFn`].
@@ -63,7 +62,7 @@ pub(super) fn level_filter(level: BhrLogLevel) -> Result<LevelFilter> {
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Nothing under these locks is left half done by a panic.
+    // A panic leaves nothing under these locks half done.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

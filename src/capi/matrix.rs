@@ -13,18 +13,16 @@ use glam::DMat4;
 use std::mem::size_of;
 
 /// Matrices lie in memory row by row, else column by column. For matrices that multiply row vectors (DirectXMath,
-/// Unreal) it is the other way round: those that lie there row by row are given without it. Since 0.2.0.
+/// Unreal) it is the other way round: those that lie there row by row are given without it.
 pub const BHR_MATRIX_ROW_MAJOR: u32 = 1u32;
 /// Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal.
-/// Since 0.2.0.
 pub const BHR_MATRIX_Y_DOWN: u32 = 2u32;
-/// Depths lie in 0 .. 1, else in -1 .. 1 (OpenGL). For bhr_camera_matrices; bhr_camera_from_matrices does not ask.
-/// Since 0.2.0.
+/// Depths lie in 0 .. 1, else in -1 .. 1 (OpenGL). bhr_camera_from_matrices does not ask for it.
 pub const BHR_MATRIX_ZERO_TO_ONE: u32 = 4u32;
-/// The near plane has the greatest depth, the far one the least. For bhr_camera_matrices. Since 0.2.0.
+/// The near plane has the greatest depth, the far one the least. bhr_camera_from_matrices does not ask for it.
 pub const BHR_MATRIX_REVERSED: u32 = 8u32;
 /// The camera looks along its own +z, with x to the right and y up (Direct3D, Unreal), else along -z (OpenGL,
-/// Vulkan, Unity). For bhr_camera_matrices; bhr_camera_from_matrices sees it in the projection. Since 0.2.0.
+/// Vulkan, Unity). bhr_camera_from_matrices sees it in the projection.
 pub const BHR_MATRIX_FORWARD_Z: u32 = 16u32;
 
 const KNOWN: u32 =
@@ -51,29 +49,16 @@ unsafe fn read_matrix(pointer: *const f64, name: &str, flags: u32) -> Result<DMa
 }
 
 /// Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
-/// host's matrices; the rest of it, its motion for one, stays. Touches no context. Any thread, inside callbacks
-/// too.
+/// host's matrices; the rest of it, its motion for one, stays. Touches no context. On failure the camera stays as it
+/// was.
 ///
 /// view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
-/// rotation and a shift, without scale. projection is any perspective one: of OpenGL, Vulkan, Direct3D or Metal,
-/// off-axis, jittered, with reversed or infinite depths; its row of depths is not read. flags: BHR_MATRIX_ROW_MAJOR
-/// and BHR_MATRIX_Y_DOWN as they are; the others do not matter here.
-///
-/// bhr's scene is right-handed. For a left-handed world negate one axis: of the positions given to bhr, and of the
-/// view that is passed here (no flags in both):
-///
-/// - Unity, with positions (x, y, -z):
-///   `Matrix4x4 view = camera.worldToCameraMatrix * Matrix4x4.Scale(new Vector3(1, 1, -1));`
-///   `Matrix4x4 projection = camera.projectionMatrix;`
-/// - Unreal, with positions (x, -y, z), in cm:
-///   `FMatrix view = FScaleMatrix(FVector(1, -1, 1)) * matrices.GetViewMatrix();`
-///   `FMatrix projection = matrices.GetProjectionMatrix();`
-///
-/// On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, unknown flags, numbers not finite, a
-/// view that is not rigid to 1e-4, a projection that is orthographic, sheared or rolled, matrices that mirror the
-/// scene (left-handed worlds), the hole's centre as position, and a camera whose struct_size ends before jitter
-/// does. Since 0.2.0.
-///
+/// rotation and a shift, without scale. projection is any perspective one, off-axis, jittered, with reversed or
+/// infinite depths; its row of depths is not read. flags: BHR_MATRIX_ROW_MAJOR and BHR_MATRIX_Y_DOWN. The world is
+/// right-handed: docs/cameras.md says how Unity and Unreal, whose worlds are not, negate an axis.
+/// Errors: INVALID_ARGUMENT also for a view that is not rigid to 1e-4, a projection that is orthographic, sheared or
+/// rolled, matrices that mirror the scene (left-handed worlds), the hole's centre as position, and a camera whose
+/// struct_size ends before jitter does. @since 0.2.0
 /// cbindgen:ptrs-as-arrays=[[view;16], [projection;16]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_from_matrices(
@@ -100,14 +85,11 @@ pub unsafe extern "C" fn bhr_camera_from_matrices(
     })
 }
 
-/// The view and the projection of a PERSPECTIVE or FRUSTUM camera, for hosts whose own things are to be seen where
-/// bhr shows them: pixels of a width x height frame with the planes near_z > 0 and far_z > near_z, or INFINITY.
-/// flags: any of BHR_MATRIX_*; the matrices are what bhr_camera_from_matrices takes. For a left-handed world
-/// multiply the view by the same scale again. The camera's motion does not enter: an observer that moves sees
-/// directions aberrated, which no matrix says. Touches no context. Any thread, inside callbacks too. Errors:
-/// INVALID_ARGUMENT for NULL, a side of 0, another projection, planes out of range, unknown flags, a camera that
-/// bhr_set_camera would refuse. Since 0.2.0.
-///
+/// The view and the projection of a PERSPECTIVE or FRUSTUM camera, as bhr_camera_from_matrices takes them: for
+/// pixels of a width x height frame with the planes near_z > 0 and far_z > near_z, or INFINITY. flags: any of
+/// BHR_MATRIX_*. For a left-handed world multiply the view by the same scale again. The camera's motion does not
+/// enter: an observer that moves sees directions aberrated, which no matrix says. Touches no context.
+/// Errors: INVALID_ARGUMENT also for another projection, and a camera that bhr_set_camera would refuse. @since 0.2.0
 /// cbindgen:ptrs-as-arrays=[[out_view;16], [out_projection;16]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_matrices(

@@ -11,8 +11,9 @@ use std::io::Write;
 const MESSAGE_BYTES: usize = 10_000;
 
 thread_local! {
-    /// It is stored in place, so that saying that there is no memory needs none, and a pointer that a host kept too
-    /// long shows a later message, not freed memory. (It needs no destructor either, which would take memory as well.)
+    /// The message is stored in place, so that saying that there is no memory needs none, and a pointer that a host
+    /// kept too long shows a later message, not freed memory. (It needs no destructor either, which would take memory
+    /// as well.)
     static MESSAGE: RefCell<[u8; MESSAGE_BYTES]> = const { RefCell::new([0; MESSAGE_BYTES]) };
 }
 

@@ -21,44 +21,40 @@ use arrayvec::ArrayVec;
 use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
 
-/// Outputs of one call at most. Since 0.2.0.
+/// Outputs of one call at most. @since 0.2.0
 pub const BHR_MAX_OUTPUTS: u32 = 8u32;
 
 /// A kind of output. All but LIGHT are numbers of the one ray through a pixel's centre: they are not filtered, and
 /// not to be averaged across edges. Scene lengths and axes; crossings are those within the disk's radii, in the
 /// order in which the ray from the camera meets them, so that without a disk there are none. Outside a fisheye's
-/// circle SKY and TRANSMISSION are 0, the others NaN. Since 0.2.0.
+/// circle SKY and TRANSMISSION are 0, the others NaN. @since 0.2.0
 pub type BhrOutputKind = i32;
 /// The picture, or with BhrView another than LIGHT its values: what bhr_render_image makes, byte for byte, in any
-/// format that goes with the view. index: 0. Since 0.2.0.
+/// format that goes with the view. index: 0.
 pub const BHR_OUTPUT_LIGHT: BhrOutputKind = 0;
-/// R32F: the distance from the camera to what the ray meets first. Of the direct image of the disk, a crossing of
-/// order 0, that is the straight line's length, |x_hit - x_camera|. Light of higher orders, and captured rays, pass
-/// the hole: the distance to the point of the line of sight that is nearest to the hole, 0 where it lies behind.
-/// Infinity where the ray escapes without a crossing. Volumes and hot spots have none. A host's linear depth is
-/// this times the cosine of the angle to its forward axis. index: 0. Since 0.2.0.
+/// R32F: the distance from the camera to what the ray meets first: along a straight line to the direct image of the
+/// disk; for light of higher orders, and captured rays, to the point of the line of sight that is nearest to the
+/// hole, 0 where that lies behind; infinity where the ray escapes without a crossing. Volumes and hot spots have
+/// none. A linear depth is this times the cosine of the angle to the forward axis. index: 0.
 pub const BHR_OUTPUT_DEPTH: BhrOutputKind = 1;
 /// RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
-/// infinity). All 0 where the ray is captured, or unresolved. It is known behind the disk, too: TRANSMISSION, or
-/// the picture's alpha, says how much of it is seen. A host samples its own surroundings along it. index: 0. Since
-/// 0.2.0.
+/// infinity). All 0 where the ray is captured, or unresolved. The disk does not hide it (see TRANSMISSION). index:
+/// 0.
 pub const BHR_OUTPUT_SKY: BhrOutputKind = 2;
 /// R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
-/// captured. With BHR_IMAGE_TRANSPARENT the picture's alpha is 1 less the mean of this over a pixel. index: 0.
-/// Since 0.2.0.
+/// captured. The alpha of a TRANSPARENT picture is 1 less the mean of this over a pixel. index: 0.
 pub const BHR_OUTPUT_TRANSMISSION: BhrOutputKind = 3;
 /// RGBA32F: x, y, z of crossing number index, and its order, 0 for the direct image. Without that crossing x, y, z
-/// are NaN, and the fourth is -1 where the ray escapes, -2 where it is captured, NaN where it is unresolved. Since
-/// 0.2.0.
+/// are NaN, and the fourth is -1 where the ray escapes, -2 where it is captured, NaN where it is unresolved.
 pub const BHR_OUTPUT_POSITION: BhrOutputKind = 4;
 /// RGBA32F: radius, azimuth, redshift and delay of crossing number index, as in BhrCrossing; NaN without that
-/// crossing. The delay is NaN for cameras at or inside the photon sphere that fall. Since 0.2.0.
+/// crossing. The delay is NaN for cameras at or inside the photon sphere that fall.
 pub const BHR_OUTPUT_DISK: BhrOutputKind = 5;
-/// R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. REDSHIFT, ORDER and DEFLECTION come from
-/// the same rays as other outputs; the others take as long as a frame of their own. Since 0.2.0.
+/// R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. Views but REDSHIFT, ORDER and DEFLECTION
+/// take as long as a frame of their own.
 pub const BHR_OUTPUT_VIEW: BhrOutputKind = 6;
 
-/// An output and where it goes. Begin with bhr_output_init. Since 0.2.0.
+/// An output and where it goes. Begin with bhr_output_init. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrOutput {
@@ -73,8 +69,7 @@ pub struct BhrOutput {
     /// The image, in the format of its kind; NULL with target. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT
     /// only.
     pub image: *const BhrImage,
-    /// A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h, which takes both kinds
-    /// of places in one list; else NULL.
+    /// A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h; else NULL.
     pub target: *mut c_void,
 }
 
@@ -214,8 +209,7 @@ unsafe fn read<'a>(outputs: *const BhrOutput, size: usize, count: u32) -> Result
     targets.collect()
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size. Since 0.2.0.
+/// Fills in the defaults. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_output_init(output: *mut BhrOutput, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
@@ -223,17 +217,14 @@ pub unsafe extern "C" fn bhr_output_init(output: *mut BhrOutput, struct_size: us
 }
 
 /// Renders several outputs of the scene as it is now: count of them, packed, 1 .. BHR_MAX_OUTPUTS, whose images are
-/// of one size; the region, if one is set, is theirs. All outputs but LIGHT and some views come from one pass over
-/// the frame. LIGHT has the bytes that bhr_render_image makes. The others agree with bhr_trace_rays along
-/// bhr_camera_rays to 5e-5 (1 + |value|), but for fewer than one number in 500, of rays that wind about the hole,
-/// or pass the edge of the disk or of the shadow.
-///
-/// out_job NULL: the call returns when all of it is there, and reports to the progress callback. Otherwise *out_job
-/// becomes a job as bhr_render_image_async makes them; images are then written until it is done or destroyed.
-/// output_size = sizeof(BhrOutput) as the caller was compiled; no output's struct_size may be larger. Errors: those
-/// of bhr_render_image, or of bhr_render_image_async; INVALID_ARGUMENT for a count, a size, a kind or an index
-/// outside its range, images of several sizes, a format that does not go with its kind, or a target; UNSUPPORTED for
-/// outputs other than LIGHT where BhrCamera.eye has effect. Since 0.2.0.
+/// of one size; the region, if one is set, is theirs. LIGHT has the bytes that bhr_render_image makes;
+/// docs/compositing.md says how exact the others are. out_job NULL: the call returns when all of it is there, and
+/// reports to the progress callback. Otherwise *out_job becomes a job as bhr_render_image_async makes them; images
+/// are then written until it is done or destroyed. output_size = sizeof(BhrOutput) as the caller was compiled; no
+/// output's struct_size may be larger.
+/// Errors: those of bhr_render_image, or of bhr_render_image_async; INVALID_ARGUMENT for images of several sizes, a
+/// format that does not go with its kind, or a target; UNSUPPORTED for outputs other than LIGHT where BhrCamera.eye
+/// has effect. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs(
     context: *mut BhrContext,
@@ -266,16 +257,12 @@ pub unsafe extern "C" fn bhr_render_outputs(
     }
 }
 
-/// Writes outputs that bhr_render_outputs has made to an .exr file: one part of scan lines, 32-bit floats (16-bit
-/// ones of LIGHT in RGBA16F), ZIP, with the channels R, G, B, A (LIGHT), depth.Z, sky.x, .y, .z, .g,
-/// transmission.Y, position.x, .y, .z, .order, disk.radius, .azimuth, .g, .delay, and .Y of redshift, order,
-/// deflection, steps, metric, optical_depth, intensity (VIEW); of crossings beyond the first the layers are
-/// position1, disk1 and so on. Alpha is written as it is. Its attributes name the library's version, the backend,
-/// the adapter, and every parameter of the scene as it is now: bhr.version, bhr.hole.spin ... by the names of the
-/// structs' fields here (bits of flags that are set by themselves, as bhr.disk.plunges; numbers are doubles; the first
-/// volume is bhr.volume0). A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
-/// bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F; UNSUPPORTED for another extension,
-/// LIGHT in an 8-bit format, or a library that was built without EXR; IO; OUT_OF_MEMORY. Since 0.2.0.
+/// Writes outputs that bhr_render_outputs has made to an .exr file: one part with a layer for each, and every
+/// parameter of the scene as it is now among its attributes. docs/files.md lists channels and attributes. Alpha is
+/// written as it is. A file is replaced as bhr_image_save does it.
+/// Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
+/// UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.
+/// @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_save_outputs(
     context: *const BhrContext,

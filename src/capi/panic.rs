@@ -116,7 +116,7 @@ mod tests {
         let error = thread.run(work).map(|never: ()| never).unwrap_err();
         assert!(error.message.contains("panic.rs") && error.message.contains("deliberate"), "{error}");
         drop(gpu::driver_lock::lock());
-        // It is asked in vain, and what it was to do is not dropped here; its owner does not wait for it.
+        // The thread is asked in vain, and what it was to do is not dropped here; its owner does not wait for it.
         let dropped = PanicsWhenDropped;
         assert_eq!(thread.run(move || drop(dropped)).unwrap_err().kind, ErrorKind::DeviceLost);
         drop(thread);

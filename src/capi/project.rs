@@ -3,7 +3,6 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::anywhere;
 use super::pointer::read_vector;
 use super::rays::{Array, BhrRay, CHUNK, frame_pixels};
 use super::status::BhrStatus;
@@ -14,45 +13,43 @@ use crate::scene::project::{HIGHEST_ORDER, Projected, ProjectedPoint};
 use glam::DVec3;
 use std::mem::size_of;
 
-/// The highest order that bhr_project_point looks for. Since 0.2.0.
+/// The highest order that bhr_project_point looks for. @since 0.2.0
 pub const BHR_MAX_IMAGE_ORDER: u32 = 3u32;
 
 const _: () = assert!(BHR_MAX_IMAGE_ORDER == HIGHEST_ORDER);
 
-/// An image of a point: where on the screen it appears, and how. Since 0.2.0.
+/// An image of a point: where on the screen it appears, and how. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrProjectedPoint {
     /// sizeof(BhrProjectedPoint), set by the caller.
     pub struct_size: u32,
-    /// 1: a ray to the point was found. 0: there is none (the point is in the hole, or where the camera is), or it is
-    /// lost; the numbers are then NaN, the ray's 0.
+    /// 1: a ray to the point was found. 0: there is none (the point is in the hole, or where the camera is), or it
+    /// is lost; the numbers are then NaN, the ray's 0.
     pub found: u32,
-    /// 1: it is seen within the image, whatever matter or sky may be before it. 0: beside it, or not found.
+    /// 1: it is within the image, whatever matter or sky may be before it. 0: beside it, or not found.
     pub on_screen: u32,
     /// 1: none was found, though there may be one.
     pub lost: u32,
-    /// Pixel position to the right, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
-    /// projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
+    /// Pixel position to the right, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where
+    /// the projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
     pub x: f64,
-    /// The same downwards.
+    /// Pixel position downwards, likewise.
     pub y: f64,
     /// The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y.
     pub ray: BhrRay,
-    /// How much larger, in solid angle, something small at the point looks to the camera than it would without the
-    /// hole, the camera's motion included; negative where the image is mirrored, as those of odd orders are. It grows
-    /// without limit near a caustic, which without spin is the line straight behind the hole.
+    /// How much larger, in solid angle, something small at the point looks to the camera than without the hole, the
+    /// camera's motion included; negative where the image is mirrored. It grows without limit near a caustic.
     pub magnification: f64,
     /// Coordinate time since the light left the point, scene lengths; NaN from inside the horizon.
     pub delay: f64,
     /// g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO).
     pub redshift: f64,
-    /// The straight distance from the camera to the point, scene lengths: the depth of the image, as
-    /// BHR_OUTPUT_DEPTH and bhr_set_occluder measure it.
+    /// The straight distance from the camera to the point, scene lengths: its depth for BHR_OUTPUT_DEPTH and
+    /// bhr_set_occluder.
     pub distance: f64,
-    /// Where the point seems to be, scene axes: as far from the camera as it is, in the direction in which the camera
-    /// sees its image. A rasteriser that draws a vertex here, with the camera's own matrices, draws it at x, y and
-    /// with the depth that belongs to it; so do cameras that move.
+    /// Where the point seems to be, scene axes: as far from the camera as it is, in the direction of its image. A
+    /// vertex that is drawn here with the camera's own matrices appears at x, y, with the depth that belongs to it.
     pub apparent: [f64; 3],
 }
 
@@ -91,31 +88,13 @@ impl From<Projected> for BhrProjectedPoint {
     }
 }
 
-/// Clears struct_size bytes and fills in struct_size, which calls that fill the struct read, and what stands for no
-/// image. Any thread, inside callbacks too. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_projected_point_init(point: *mut BhrProjectedPoint, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_projected_point_init", || unsafe { versioned::init(point, "point", struct_size) })
-}
-
 /// Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
 /// inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
-/// is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin the image of an order is
-/// the one that the image of this order without spin becomes as the spin grows from 0.
-///
-/// Every point outside the horizon has an image of each order, also behind the hole. With spin some have more, by the
-/// caustics that a spinning hole has; where the image has ended in another as the spin grew, it is the one of the same
-/// orientation that took its place. Of 24,000 random points outside r+ + 1 M, seen from outside r+ + 2 M at spins up
-/// to 0.999, all were found. The ray of an image that is found passes the point within 1e-6 of its distance, and as
-/// bhr_trace_rays of a context on a GPU follows it, within 1e-4. Whether matter is before the point is for the host to
-/// ask (bhr_trace_rays).
-///
-/// It is computed in double precision on the CPU, on this thread, whatever the backend: in about 40 microseconds, at
-/// order 1 with spin 0.2 ms, at orders 2 and 3 with spin in about 5 ms. Errors: INVALID_ARGUMENT for
-/// NULL, a wrong struct_size, numbers not finite, an order above the highest; INVALID_STATE for a point farther
-/// than 1e15 M; else as bhr_camera_ray. Since 0.2.0.
-///
+/// is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. Every point outside the horizon has
+/// an image of each order, also behind the hole; whether matter is before it is for the host to ask
+/// (bhr_trace_rays). Computed in double precision on this thread. docs/cameras.md has times and accuracy, and what
+/// becomes of images with spin.
+/// Errors: INVALID_STATE for a point farther than 1e15 M; else those of bhr_camera_ray. @since 0.2.0
 /// cbindgen:ptrs-as-arrays=[[point;3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_project_point(
@@ -138,14 +117,13 @@ pub unsafe extern "C" fn bhr_project_point(
     }
 }
 
-/// bhr_project_point for many points, on as many threads as the machine has cores: the vertices of a mesh, say, so
-/// that a host's things are where light shows them (docs/compositing.md). points: 3 count doubles, x, y, z of each.
-/// image_size: sizeof(BhrProjectedPoint) as the caller was compiled; out_images has room for count, packed, and each
-/// gets that size as its struct_size, which need not be set before. A point that is not finite, or farther than 1e15
-/// M, has no image and is no error of the others. With count 0 the call does nothing. A point takes 20 to 40
-/// microseconds of one core at order 0, 0.2 ms at order 1 with spin, 5 ms above. Other calls of the context wait until
-/// it returns: a host with a thread that must not wait gives large meshes in parts. Errors: INVALID_ARGUMENT for NULL
-/// or a size below the first version's; else as bhr_project_point. An error leaves out_images alone. Since 0.2.0.
+/// bhr_project_point for many points, such as the vertices of a mesh, on as many threads as the machine has cores.
+/// points: 3 count doubles, x, y, z of each. image_size: sizeof(BhrProjectedPoint) as the caller was compiled;
+/// out_images has room for count, packed, and each gets that size as its struct_size, which need not be set before.
+/// A point that is not finite, or farther than 1e15 M, has no image and is no error of the others. With count 0 the
+/// call does nothing. Other calls of the context wait until it returns. An error leaves out_images alone.
+/// docs/compositing.md.
+/// Errors: those of bhr_project_point. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_project_points(
     context: *const BhrContext,

@@ -15,19 +15,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use std::mem::size_of;
 
-/// A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION, because some calls
-/// that fill it in are not told its size.
+/// A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrRay {
     /// Scene axes and lengths.
     pub position: [f64; 3],
     /// The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
-    /// are along the frame that the conventions above give: the local static observer's (ZAMO), inside a spin-0 horizon
-    /// the frame of the observer falling from rest at infinity.
+    /// are along the frame that Directions, above, gives.
     pub direction: [f64; 3],
-    /// nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies every
-    /// redshift of the hit.
+    /// nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies the hit's
+    /// redshifts.
     pub frequency_ratio: f64,
 }
 
@@ -62,8 +60,7 @@ pub const BHR_FATE_UNRESOLVED: BhrFate = 2;
 /// The ray is not valid: not finite, direction zero, or no frame at its place.
 pub const BHR_FATE_INVALID: BhrFate = 3;
 
-/// The end of a ray, and its crossings of the equatorial plane. It may grow at its end: bhr_trace_rays is told
-/// hit_size.
+/// The end of a ray, and its crossings of the equatorial plane. It may grow: bhr_trace_rays is told hit_size.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrHit {
@@ -141,10 +138,10 @@ pub(super) fn frame_pixels(width: u32, height: u32) -> Result<usize> {
 
 /// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through the
 /// pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
-/// circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors: INVALID_ARGUMENT for NULL, a
-/// side of 0 or above 2^20, an image that reaches out of the region's frame; INVALID_STATE where the camera's motion
-/// cannot be, or for a CUBE whose frame is not 6 times as wide as high; UNSUPPORTED inside a spinning hole's horizon.
-/// out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
+/// circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. out_rays is left alone by
+/// INVALID_ARGUMENT and cleared by other errors.
+/// Errors: INVALID_ARGUMENT for a side of 0 or above 2^20, or an image that reaches out of the region's frame;
+/// INVALID_STATE and UNSUPPORTED as bhr_render_image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_rays(
     context: *const BhrContext,
@@ -174,8 +171,8 @@ pub unsafe extern "C" fn bhr_camera_rays(
 }
 
 /// One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
-/// image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
-/// bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+/// image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue.
+/// Errors: those of bhr_camera_rays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_ray(
     context: *const BhrContext,
@@ -324,11 +321,11 @@ unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: us
 
 /// Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
 /// equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter moves as the
-/// disk's flags say, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
-/// an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at least
-/// 56 and 184, the sizes of the first version; both arrays are packed. A ray that is longer than this library's must be
-/// 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or
-/// a size below the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+/// disk's flags say, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID,
+/// not an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
+/// least 56 and 184; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a longer
+/// hit is cleared there. With count 0 the call does nothing. An error while tracing clears out_hits.
+/// Errors: UNSUPPORTED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_rays(
     context: *mut BhrContext,
@@ -352,12 +349,13 @@ pub unsafe extern "C" fn bhr_trace_rays(
     }
 }
 
-/// Fills in the curve that a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) for each point.
-/// out_points has room for 4 capacity doubles. *out_count becomes the number of points: 2 or more, at most capacity,
-/// never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that escapes, at
-/// ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out.
-/// The curve is traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL,
-/// capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+/// Fills in the curve that a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) for each
+/// point. out_points has room for 4 capacity doubles. *out_count becomes the number of points: 2 or more, at most
+/// capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
+/// escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
+/// they ran out. The curve is traced in double precision on the CPU, whatever the backend.
+/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's
+/// horizon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

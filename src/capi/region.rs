@@ -3,15 +3,14 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::anywhere;
-use super::pointer::{Out, check_reserved};
+use super::pointer::check_reserved;
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::Region;
 
-/// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
-/// the same bytes as the frame, unless that has glare (BhrFilm.bloom).
+/// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
+/// have the same bytes as the frame, unless that has glare (BhrFilm.bloom).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrRegion {
@@ -38,12 +37,6 @@ unsafe impl Versioned for BhrRegion {
     }
 }
 
-impl From<Region> for BhrRegion {
-    fn from(set: Region) -> Self {
-        Self { full_width: set.full_width, full_height: set.full_height, x: set.x, y: set.y, ..Self::defaults() }
-    }
-}
-
 impl TryFrom<BhrRegion> for Region {
     type Error = Error;
 
@@ -55,19 +48,9 @@ impl TryFrom<BhrRegion> for Region {
     }
 }
 
-/// Clears struct_size bytes and sets struct_size. The frame's size has no default: it must be set. Any thread, inside
-/// callbacks too. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_region_init(region: *mut BhrRegion, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_region_init", || unsafe { versioned::init(region, "region", struct_size) })
-}
-
-/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Glare
-/// and beams come from the whole frame: with a region, 8-bit images of light with a film that has either are
-/// INVALID_STATE when they are rendered; of the default film the glare is left out (BhrFilm.bloom). An image that
-/// reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
-/// INVALID_ARGUMENT.
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
+/// is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and INVALID_STATE for
+/// 8-bit images of light with a film that has glare or a beam (see BhrFilm.bloom).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -77,30 +60,6 @@ pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const
                 true => None,
                 false => Some(versioned::read(region, "region")?.try_into()?),
             };
-            Ok(())
-        })
-    }
-}
-
-/// Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
-/// values of bhr_region_init. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_get_region(
-    context: *const BhrContext,
-    region: *mut BhrRegion,
-    out_present: *mut i32,
-) -> BhrStatus {
-    // SAFETY: NULL or valid, by the header's conventions.
-    unsafe {
-        let region = OutStruct::cleared(region, "region");
-        let present = Out::cleared(out_present);
-        on_context("bhr_get_region", context, |state| {
-            present.required("out_present")?;
-            match state.region {
-                Some(set) => region.set(&set.into())?,
-                None => region.set_defaults()?,
-            }
-            present.set(state.region.is_some().into());
             Ok(())
         })
     }

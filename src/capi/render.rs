@@ -10,13 +10,12 @@ use super::status::BhrStatus;
 use crate::error::{Error, ErrorKind};
 use std::ffi::c_void;
 
-/// Is told how much of a frame is done: fraction grows from 0 to 1. It returns 0 to cancel, anything else to go on; at
-/// 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread. It must
-/// not throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
+/// Is told how much of a frame is done: fraction grows from 0 to 1. It returns 0 to cancel, anything else to go on;
+/// at 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread.
 pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
-/// Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are begun
-/// from now on. fn NULL: none (default). Errors: INVALID_ARGUMENT for a NULL context.
+/// Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are
+/// begun from now on. fn NULL: none (default).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_progress(
     context: *mut BhrContext,
@@ -32,12 +31,13 @@ pub unsafe extern "C" fn bhr_set_progress(
     }
 }
 
-/// Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
-/// bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
-/// INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for
-/// bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
-/// DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
-/// message says so, and what is not yet rendered is untouched.
+/// Renders the scene as it is now into the host's memory and returns when it is there. Until the first pixels are
+/// written an error leaves the target alone; after that the message says so, and what is not yet rendered is
+/// untouched.
+/// Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
+/// region's frame; INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide
+/// as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the
+/// progress callback.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -63,20 +63,12 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
 const WINDOW: [u32; 2] = [1920, 1080];
 
 /// Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
-/// programs (a driver compiles one in 0.1 to 1 s if its cache lacks it), tables and the sky. A frame makes whatever
-/// is still missing. Programs for likely changes of the scene (spin, view, glare, projection ...) are also made in
-/// the background, at low priority: those of the default scene from bhr_context_create on, those of changes while
-/// frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
-///
-/// target is an image as bhr_render_image would be given it; its pixels and byte_size are not looked at, and may be 0.
-/// For RGBA8_SRGB without BHR_IMAGE_TRANSPARENT, frames in windows of that size are prepared too. NULL: only frames in
-/// windows of 1920 x 1080, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
-/// BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
-/// must be 6 times as wide as high).
-///
-/// On a GPU it renders one frame that is thrown away. bhr_frame_stats does not count that frame, and the progress
-/// callback may cancel it. The call waits for a job that is being rendered. Any thread, not inside callbacks. Errors:
-/// as bhr_render_image. Since 0.2.0.
+/// programs, tables and the sky. target is an image as bhr_render_image would be given it; its pixels and byte_size
+/// are not looked at, and may be 0. For RGBA8_SRGB without BHR_IMAGE_TRANSPARENT, frames in windows of that size are
+/// prepared too; NULL: only frames in windows of 1920 x 1080, whatever region is set. The progress callback may
+/// cancel it. The call waits for a job that is being rendered, and bhr_frame_stats does not count it. docs/jobs.md
+/// says what is made when.
+/// Errors: those of bhr_render_image. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -3,10 +3,9 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::anywhere;
 use super::job::{self, BhrJob};
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{OutStruct, Versioned};
 use crate::error::Error;
 use crate::tracer::FrameStats;
 
@@ -32,8 +31,7 @@ pub struct BhrFrameStats {
     pub readback_ns: u64,
     /// Device memory that the context holds.
     pub device_bytes: u64,
-    /// Lens tables made for this frame: 0 where those of an earlier frame served, which are kept for up to four
-    /// places of eyes that are shown by turns, or where none were needed. Since 0.2.0.
+    /// Lens tables made for this frame: 0 where those of an earlier one served, or none were needed. @since 0.2.0
     pub lens_tables: u64,
 }
 
@@ -63,15 +61,7 @@ impl From<FrameStats> for BhrFrameStats {
     }
 }
 
-/// Clears struct_size bytes and sets struct_size, which calls that fill the struct read. Any thread, inside callbacks
-/// too. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_frame_stats_init(stats: *mut BhrFrameStats, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_frame_stats_init", || unsafe { versioned::init(stats, "stats", struct_size) })
-}
-
-/// Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Numbers about the context's last finished frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_frame_stats(context: *const BhrContext, stats: *mut BhrFrameStats) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -81,8 +71,8 @@ pub unsafe extern "C" fn bhr_frame_stats(context: *const BhrContext, stats: *mut
     }
 }
 
-/// Numbers about the frame of a job that is done. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size;
-/// INVALID_STATE for a job that is not done, or that failed.
+/// Numbers about the frame of a job that is done.
+/// Errors: INVALID_STATE for a job that is not done, or that failed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_stats(job: *const BhrJob, stats: *mut BhrFrameStats) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -6,7 +6,7 @@ use super::message::last_message;
 use crate::error::ErrorKind;
 use std::ffi::{CStr, c_char};
 
-/// The result of a call: 0 is success, above 0 success with news, below 0 an error. bhr_error_message has the details.
+/// The result of a call: 0 is success, above 0 success with news, below 0 an error. bhr_error_message says more.
 pub type BhrStatus = i32;
 /// Success.
 pub const BHR_OK: BhrStatus = 0;
@@ -73,15 +73,14 @@ fn name(status: BhrStatus) -> &'static CStr {
     }
 }
 
-/// The message of the last call that failed on this thread: the function, the argument, its value and the limit. Never
-/// NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from inside
-/// callbacks.
+/// The message of the last call that failed on this thread: the function, the argument, its value and the limit.
+/// Never NULL; "" when no call has failed. Valid until this thread's next failing call, or its end.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_error_message() -> *const c_char {
     last_message()
 }
 
-/// The constant's name, such as "BHR_ERROR_DEVICE_LOST"; static, never NULL. May be called from inside callbacks.
+/// The constant's name, such as "BHR_ERROR_DEVICE_LOST"; static, never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_status_name(status: BhrStatus) -> *const c_char {
     name(status).as_ptr()

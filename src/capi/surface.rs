@@ -67,18 +67,15 @@ unsafe fn on_surface(
     keep(outside_callbacks(function, || body(&surface.surface)), Some(&surface.message))
 }
 
-/// Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
-/// this context to render into. Call it on the thread that uses the display. A window takes one surface at a time.
-/// The window and its display must outlive the surface. (Only on X11, where bhr presents through a connection of its
-/// own, may they end first. On Wayland the driver crashes when a surface is destroyed after its display was closed.)
-/// Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents the
-/// frames, or they are put into the window as memory; the log (info) says which. macOS: on the main thread only. End
-/// *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window, one that does not exist
-/// (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with
-/// every reason, for a kind of window that this platform does not have, for every window in a library that was built
-/// without the cargo feature window, where nothing can present to the window, and for a side that the device's images
-/// cannot have (mostly beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory),
-/// OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it would wait for itself.
+/// Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts).
+/// Call it on the thread that uses the display. A window takes one surface at a time; it and its display must
+/// outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put there
+/// as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End *out_surface
+/// with bhr_surface_destroy. docs/window.md.
+/// Errors: INVALID_ARGUMENT for a window that does not exist (X11), or a side beyond 2^20; INVALID_STATE for a
+/// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform or build does
+/// not have, where nothing can present, and for sides beyond the device's images (mostly 16384); DEVICE_LOST also
+/// for images that do not fit into its memory.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_create(
     context: *mut BhrContext,
@@ -106,10 +103,11 @@ pub unsafe extern "C" fn bhr_surface_create(
 }
 
 /// Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
-/// size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
-/// has changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
-/// until then.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
-/// images cannot have; SURFACE_LOST.
+/// size are made by the next frame. X11: frames have the size that the window really has; this call says that it has
+/// changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
+/// until then.
+/// Errors: INVALID_ARGUMENT for a side beyond 2^20; UNSUPPORTED for one that the device's images cannot have;
+/// SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_resize(surface: *mut BhrSurface, width: u32, height: u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -117,7 +115,7 @@ pub unsafe extern "C" fn bhr_surface_resize(surface: *mut BhrSurface, width: u32
 }
 
 /// Changes how frames reach the screen, from the next one on. A mode that the window does not have becomes VSYNC.
-/// Errors: INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
+/// Errors: SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, mode: BhrPresentMode) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -127,16 +125,13 @@ pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, 
 }
 
 /// Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
-/// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
-/// the window is not 6 times as wide as high. Returns when the frame is on its way to the screen; bhr_frame_stats
-/// tells of the last frame that is finished, which may be an earlier one. (Frames that go through the host's memory
-/// are finished.) With VSYNC it first waits until the window takes another frame, at most a second, and so do calls
-/// on the context and the surface from other threads. FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
-/// platform tells, or is being resized; nothing was presented: wait for the window's next event, or try again a
-/// little later. Any thread (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT
-/// for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from
-/// then on, when the window is gone or the context was recovered: destroy the surface, and make it again if there is
-/// a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
+/// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too,
+/// if the window is not 6 times as wide as high. Returns when the frame is on its way to the screen. With VSYNC it
+/// first waits until the window takes another frame, at most a second, and so do calls on the context and the
+/// surface from other threads. FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or being
+/// resized: wait for its next event, or try again a little later.
+/// Errors: INVALID_ARGUMENT for a surface of another context; INVALID_STATE and UNSUPPORTED as bhr_render_image;
+/// SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *mut BhrSurface) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -151,8 +146,8 @@ pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *
     }
 }
 
-/// Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
-/// may use the surface any more. From inside a callback it does nothing: bhr_error_message then says so.
+/// Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread may
+/// use the surface any more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
     const NAME: &str = "bhr_surface_destroy";

@@ -12,8 +12,8 @@ use crate::scene::Transfer;
 use bytemuck::{Pod, Zeroable};
 use std::mem::size_of;
 
-/// How the volumes and hot spots along a ray shine, and how much they absorb. nu_camera is the one frequency at which
-/// a picture shows power laws (BhrVolume). It may grow at its end: bhr_transfer_rays is told its size. Since 0.2.0.
+/// How the volumes and hot spots along a ray shine, and how much they absorb. nu_camera is the one frequency at
+/// which a picture shows power laws (BhrVolume). It may grow: bhr_transfer_rays is told its size. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrTransfer {
@@ -21,18 +21,17 @@ pub struct BhrTransfer {
     pub fate: BhrFate,
     /// Reserved: 0.
     pub reserved: u32,
-    /// The specific intensity I_nu of power laws at nu_camera where the ray begins, 0 and up. Its unit is the emission
-    /// of 1 M of matter at density 1 that is at rest: 2 is as bright as 2 M of such matter which absorbs nothing. A
-    /// host that knows that emission in W / (m^2 Hz sr) multiplies by it. brightness and tint do not count; thermal
-    /// matter absorbs this light and adds none. NaN for a ray that is not valid. A ray that is BHR_FATE_UNRESOLVED has
-    /// the part as far as it was followed, and so has its light.
+    /// The specific intensity I_nu of power laws at nu_camera where the ray begins, 0 and up, in units of the
+    /// emission of 1 M of matter at density 1 that is at rest; brightness and tint do not count, and thermal matter
+    /// adds none. NaN for a ray that is not valid; a BHR_FATE_UNRESOLVED one has the part as far as it was followed,
+    /// and so has its light.
     pub intensity: f64,
-    /// At nu_camera, of all volumes and hot spots together, without a unit, 0 and up: of light from behind them the
-    /// share e^-optical_depth passes. Above 300 the number says only that it is more. NaN unless the ray is
-    /// BHR_FATE_ESCAPED: towards the horizon an outside observer's rays pass ever more of the matter that falls in.
+    /// At nu_camera, of all volumes and hot spots together, 0 and up: of light from behind them the share
+    /// e^-optical_depth passes. Above 300 the number says only that it is more. NaN unless the ray is
+    /// BHR_FATE_ESCAPED.
     pub optical_depth: f64,
-    /// The light that a picture shows of all volumes and hot spots, linear Rec. 709 before exposure, with brightness,
-    /// tint and the effects that are set. NaN for a ray that is not valid.
+    /// The light that a picture shows of all volumes and hot spots, linear Rec. 709 before exposure, with
+    /// brightness, tint and the effects that are set. NaN for a ray that is not valid.
     pub light: [f64; 3],
 }
 
@@ -77,17 +76,12 @@ unsafe fn transfer_all(renderer: &mut Renderer, rays: Array, out: Array, count: 
     Ok(())
 }
 
-/// Sums the matter of volumes and hot spots along count rays, the thin disk and the sky left out: intensities and
-/// optical depths in double precision on the CPU, whatever the backend; on BHR_BACKEND_CPU on all of its threads, else
-/// on the calling one. The scene's time is that of the rays' observers, at rest where they are; hot spots and the
-/// structure of volumes are seen at their retarded time with BHR_EFFECT_LIGHT_DELAY. One bad ray is BHR_FATE_INVALID,
-/// not an error of the batch. For even matter numbers agree with two independent codes to 1e-8 of a picture's peak, and
-/// with the five fluxes that Gold et al. 2020 published: four to all digits, the first to 2e-4.
-///
-/// ray_size = sizeof(BhrRay) and out_size = sizeof(BhrTransfer) as the caller was compiled, at least 56 and 48, the
-/// sizes of the first version; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a
-/// longer result is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or a size
-/// below the first version's; OUT_OF_MEMORY. An error on the way clears out. Since 0.2.0.
+/// Sums the matter of volumes and hot spots along count rays, the thin disk and the sky left out, in double
+/// precision on the CPU, whatever the backend; on BHR_BACKEND_CPU on all of its threads, else on the calling one.
+/// The scene's time is that of the rays' observers, at rest where they are; hot spots and structure are seen at
+/// their retarded time with BHR_EFFECT_LIGHT_DELAY. ray_size = sizeof(BhrRay) and out_size = sizeof(BhrTransfer) as
+/// the caller was compiled, at least 56 and 48; otherwise the arrays are as for bhr_trace_rays. An error on the way
+/// clears out. docs/matter.md says how exact it is. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_transfer_rays(
     context: *mut BhrContext,

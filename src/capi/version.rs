@@ -27,19 +27,19 @@ const _: () = assert!(
     "the BHR_VERSION_* constants and Cargo.toml disagree"
 );
 
-/// The loaded library's version: major << 16 | minor << 8 | patch. Any thread, inside callbacks too.
+/// The loaded library's version: major << 16 | minor << 8 | patch.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_version() -> u32 {
     BHR_VERSION_MAJOR << 16 | BHR_VERSION_MINOR << 8 | BHR_VERSION_PATCH
 }
 
-/// BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too.
+/// BHR_ABI_VERSION of the loaded library.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_abi_version() -> u32 {
     BHR_ABI_VERSION
 }
 
-/// The loaded library's version, such as "0.2.0"; static. Any thread, inside callbacks too.
+/// The loaded library's version, such as "0.2.0"; static.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_version_string() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

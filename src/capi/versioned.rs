@@ -23,7 +23,7 @@ pub(super) unsafe trait Versioned: Copy {
     const SIZES: &'static [usize];
     /// The values that `*_init` fills in.
     fn defaults() -> Self;
-    /// The same for a host whose struct has `size` bytes: what the header of its release documented, and, in fields
+    /// The defaults for a host whose struct has `size` bytes: what the header of its release documented, and, in fields
     /// that the host lacks, what the library did when it lacked them. A release that gives a field another default, or
     /// adds one whose default does something new, says here what those before it had.
     fn defaults_of(_size: usize) -> Self {
@@ -56,7 +56,7 @@ pub(super) fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize>
     check_named_size::<T>(size, format_args!("{name} struct_size"))
 }
 
-/// The same of a size whose whole name is `name`.
+/// Checks a size whose whole name is `name`.
 pub(super) fn check_named_size<T: Versioned>(size: usize, name: impl Display) -> Result<usize> {
     let first = const { first_size::<T>() };
     if size < first {
@@ -146,7 +146,7 @@ impl<T: Versioned> OutStruct<T> {
         Ok(())
     }
 
-    /// As `set`, with the values of `*_init`.
+    /// Sets the values of `*_init`.
     pub(super) fn set_defaults(&self) -> Result<()> {
         self.set(&T::defaults_of(self.size.clone()?))
     }

@@ -11,59 +11,45 @@ use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
 
-/// Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1
-/// at inner_radius (DISK), at radius (JET; nearer to the hole it is greater than 1) or in the middle (TORUS, HALO),
-/// but for soft edges: n is multiplied by a factor that goes from 0 to 1 between 0.9 and 1.25 of inner_radius, and
-/// from 1 to 0 between 0.5 of outer_radius and all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
+/// The place of a volume's matter: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1
+/// at inner_radius (DISK), at radius (JET) or in the middle (TORUS, HALO), but for soft edges at inner_radius and
+/// outer_radius (docs/matter.md). @since 0.2.0
 pub type BhrVolumeShape = i32;
-/// About the equatorial plane: n = (r / inner_radius)^-slope e^(-(c / thickness)^2 / 2), with soft edges. Since 0.2.0.
+/// About the equatorial plane: n = (r / inner_radius)^-slope e^(-(c / thickness)^2 / 2), with soft edges.
 pub const BHR_VOLUME_DISK: BhrVolumeShape = 0;
-/// A ring about the axis: n = e^(-((R - radius) / width)^2 / 2 - (z / (thickness radius))^2 / 2). Since 0.2.0.
+/// A ring about the axis: n = e^(-((R - radius) / width)^2 / 2 - (z / (thickness radius))^2 / 2).
 pub const BHR_VOLUME_TORUS: BhrVolumeShape = 1;
-/// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), with thickness = 1e6 a sphere. It is the
-/// model of Gold et al. 2020 (ApJ 897, 148) with thickness = 1 / h. Since 0.2.0.
+/// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), with thickness = 1e6 a sphere.
 pub const BHR_VOLUME_HALO: BhrVolumeShape = 2;
-/// A hollow jet along the axis and one opposite: matter in the wall of a cone about the axis. At r = radius the wall is
-/// at the angle opening from the axis; nearer to the hole the cone is wider, farther out it is narrower, as a parabola
-/// is: psi = opening sqrt(radius / r), at most pi / 2. thickness says how thick the wall is, slope how fast the matter
-/// thins out: n = (r / radius)^-slope e^(-((|c| - cos psi) / thickness)^2 / 2), with soft edges. The shape alone moves
-/// nothing: matter that flows along the jet has flow = BHR_FLOW_OUTFLOW; with the default, KEPLERIAN, it orbits.
-/// Since 0.2.0.
+/// A hollow jet along the axis and one opposite: matter in the wall of a cone about the axis, n = (r /
+/// radius)^-slope e^(-((|c| - cos psi) / thickness)^2 / 2), psi = opening sqrt(radius / r), at most pi / 2, with
+/// soft edges. With the default flow its matter orbits: BHR_FLOW_OUTFLOW moves it along the jet.
 pub const BHR_VOLUME_JET: BhrVolumeShape = 3;
 
-/// How the matter of a volume moves, by what the local ZAMO measures. Every flow is slower than light everywhere.
-/// Since 0.2.0.
+/// The motion of a volume's matter. Every flow is slower than light everywhere; docs/matter.md has the laws.
+/// @since 0.2.0
 pub type BhrFlow = i32;
-/// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there (Cunningham 1975,
-/// ApJ 202, 788); off the plane with the angular and the radial velocity of the plane at the same r. sub_keplerian is
-/// the share of the circular orbit's angular momentum that the matter has: with less it turns more slowly. infall goes
-/// from these orbits, 0, to matter that falls from rest at infinity, 1: between them the angular velocity dph/dt is
-/// (1 - infall) times that of the orbit plus infall times that of the fall, and so is the radial one, dr/d(tau).
-/// Since 0.2.0.
+/// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there. sub_keplerian
+/// takes angular momentum from it, infall goes over to free fall.
 pub const BHR_FLOW_KEPLERIAN: BhrFlow = 0;
-/// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020. Since 0.2.0.
+/// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020.
 pub const BHR_FLOW_ANGULAR_MOMENTUM: BhrFlow = 1;
-/// Away from the hole, the faster the farther, as the matter of a jet: beyond r = inner_radius = s it moves outwards,
-/// far away at speed (in c); at s it stands still; nearer to the hole it falls in: v_r = speed (r^2 - s^2) / (r^2 +
-/// s^2). A spinning hole turns it, in the hole's own sense whatever BHR_VOLUME_RETROGRADE says: v_ph = sqrt(1 - v_r^2)
-/// x / (1 + x^2), x = Omega sqrt(g_phph), with the angular velocity of the field lines of Blandford and Znajek
-/// (1977, MNRAS 179, 433), Omega = a / (4 r+). It is a model with the right limits, no solution of equations of motion.
-/// Since 0.2.0.
+/// Away from the hole, the faster the farther, as the matter of a jet: at rest at r = inner_radius, at speed far
+/// away, falling in nearer to the hole. A spinning hole turns it in the hole's own sense, whatever
+/// BHR_VOLUME_RETROGRADE says.
 pub const BHR_FLOW_OUTFLOW: BhrFlow = 2;
 
-/// BhrVolume.flags: the matter moves towards -ph. Since 0.2.0.
+/// BhrVolume.flags: the matter moves towards -ph.
 pub const BHR_VOLUME_RETROGRADE: u32 = 1u32;
-/// BhrVolume.flags: the light is a power law of the frequency, not a blackbody's. Since 0.2.0.
+/// BhrVolume.flags: the light is a power law of the frequency, not a blackbody's.
 pub const BHR_VOLUME_POWER_LAW: u32 = 2u32;
 
 /// Matter with depth, which shines and absorbs by the equation of transfer; nothing is scattered. Radii are in units
-/// of M, as those of BhrDisk are. Fields that shape and flow do not use are checked all the same.
-///
-/// Thermal matter absorbs alike at all frequencies and is exact under every redshift g: its opaque light is a
-/// blackbody's of g times its temperature. Without absorption it does not shine. A power law sends j = n (nu /
-/// nu_camera)^-spectral_index per M and absorbs absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being
-/// the frequency that the matter measures: a picture shows its light at the one frequency nu_camera, in the colour
-/// tint. Lengths are the matter's own. No matter is inside the horizon. Since 0.2.0.
+/// of M, other lengths those that the matter itself measures. Thermal matter absorbs alike at all frequencies, and
+/// without absorption does not shine. A power law sends j = n (nu / nu_camera)^-spectral_index per M and absorbs
+/// absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being the frequency that the matter measures: a
+/// picture shows its light at the one frequency nu_camera, in the colour tint. No matter is inside the horizon.
+/// Fields that shape and flow do not use are checked all the same. docs/matter.md. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrVolume {
@@ -75,17 +61,18 @@ pub struct BhrVolume {
     pub shape: BhrVolumeShape,
     /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
     pub flow: BhrFlow,
-    /// In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter
-    /// that moves as flags say.
+    /// In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: the place where matter is at rest. Default 0: the ISCO
+    /// of matter that moves as flags say.
     pub inner_radius: f64,
-    /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape: a DISK or JET whose
-    /// outer_radius is less than 0.9 times its inner edge, the ISCO among them, shows nothing. Default 17.
+    /// In M, greater than inner_radius, to 1e4. There is nothing beyond it, whatever the shape, and nothing at all
+    /// of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, the ISCO among them. Default 17.
     pub outer_radius: f64,
     /// In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8.
     pub radius: f64,
     /// In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2.
     pub width: f64,
-    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick one.
+    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick
+    /// one.
     pub thickness: f64,
     /// JET: radians, 0.01 .. 1.5. Default 0.3.
     pub opening: f64,
@@ -101,27 +88,24 @@ pub struct BhrVolume {
     pub spectral_index: f64,
     /// POWER_LAW: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1.
     pub tint: [f64; 3],
-    /// A factor on the light, 0 .. 1e6: it changes how bright the matter is, but neither its colour nor how much it
-    /// absorbs. 1 is the luminance of white in a picture without exposure and tone map. Thermal: the luminance of
-    /// matter of `temperature` at rest that is so thick that nothing shines through. Power law: that of a layer of 1 M
-    /// of density 1 at rest which absorbs nothing; one twice as deep is twice as bright. Default 1.
+    /// A factor on the light, 0 .. 1e6, which changes neither its colour nor what is absorbed. At 1 the light is as
+    /// bright as white without exposure and tone map: of thermal matter of `temperature` at rest that is so thick
+    /// that nothing shines through; of a power law, of 1 M of density 1 at rest which absorbs nothing. Default 1.
     pub brightness: f64,
     /// KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1. Default 1.
     pub sub_keplerian: f64,
-    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall. What falls moves away from an
-    /// observer on the near side and towards one on the far side, and its light is shifted by that.
+    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall from rest at infinity.
     pub infall: f64,
     /// ANGULAR_MOMENTUM: 0 .. 1. Default 1.
     pub angular_momentum: f64,
     /// OUTFLOW: the velocity far away in units of c, 0 .. 0.995. Default 0.9.
     pub speed: f64,
-    /// 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit:
-    /// a pattern P = e^(turbulence G) over its mean, G being noise of mean 0 and about variance 1. Seen with its
-    /// delay where effects have BHR_EFFECT_LIGHT_DELAY. Default 1; 0 is even matter, as is that of a host whose
+    /// 0 .. 1: the contrast of structure that the matter carries along: a pattern P = e^(turbulence G) over its
+    /// mean, G being noise of mean 0 and about variance 1. Default 1; 0 is even matter, as is that of a host whose
     /// BhrVolume ends before this field.
     pub turbulence: f64,
-    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean, so that on average it is what it is without; a
-    /// larger number draws the matter together into filaments. Default 1.8.
+    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments.
+    /// Default 1.8.
     pub clumping: f64,
     /// 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter. Default 0.15.
     pub heating: f64,
@@ -129,7 +113,7 @@ pub struct BhrVolume {
     pub seed: u64,
 }
 
-/// Most volumes of a scene. Since 0.2.0.
+/// Most volumes of a scene. @since 0.2.0
 pub const BHR_MAX_VOLUMES: usize = 4;
 
 const _: () = assert!(BHR_MAX_VOLUMES == Volume::MOST);
@@ -232,19 +216,16 @@ impl TryFrom<BhrVolume> for Volume {
     }
 }
 
-/// BhrHotSpot.flags: the spot moves towards -ph. Since 0.2.0.
+/// BhrHotSpot.flags: the spot moves towards -ph.
 pub const BHR_HOT_SPOT_RETROGRADE: u32 = 1u32;
-/// BhrHotSpot.flags: the light is a blackbody's, not a power law of the frequency; without absorption there is none.
-/// Since 0.2.0.
+/// BhrHotSpot.flags: the light is a blackbody's, not a power law's; without absorption there is none.
 pub const BHR_HOT_SPOT_THERMAL: u32 = 2u32;
 
 /// A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
-/// being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt
-/// = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M, so that it keeps its shape; parts that
-/// would have to be faster than light, beside the hole, are left out. It shines and absorbs as BhrVolume says. With
-/// BHR_EFFECT_LIGHT_DELAY each part of it is seen where it was when its light left, which for a moving blob is not a
-/// detail: without spin, seen 60 degrees from the axis, the flux of one of radius 7 and size 0.7 changes by a factor
-/// of about 21 in an orbit, without the delay by about 8. Since 0.2.0.
+/// being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at
+/// dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
+/// light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
+/// (docs/matter.md). @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrHotSpot {
@@ -270,7 +251,7 @@ pub struct BhrHotSpot {
     pub brightness: f64,
 }
 
-/// Most hot spots of a scene. Since 0.2.0.
+/// Most hot spots of a scene. @since 0.2.0
 pub const BHR_MAX_HOT_SPOTS: usize = 8;
 
 const _: () = assert!(BHR_MAX_HOT_SPOTS == HotSpot::MOST);
@@ -327,27 +308,24 @@ impl TryFrom<BhrHotSpot> for HotSpot {
 const VOLUMES: Names = Names { array: "volumes", size: "volume_size", count: "volume count" };
 const HOT_SPOTS: Names = Names { array: "hot_spots", size: "hot_spot_size", count: "hot spot count" };
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size. Since 0.2.0.
+/// Fills in the defaults. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_volume_init(volume: *mut BhrVolume, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
     anywhere("bhr_volume_init", || unsafe { versioned::init(volume, "volume", struct_size) })
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size. Since 0.2.0.
+/// Fills in the defaults. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_hot_spot_init(hot_spot: *mut BhrHotSpot, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
     anywhere("bhr_hot_spot_init", || unsafe { versioned::init(hot_spot, "hot spot", struct_size) })
 }
 
-/// Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it, and
-/// then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size =
-/// sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger than volume_size. Frames that
-/// are being rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a
-/// number outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
+/// Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it,
+/// and then volumes may be NULL. They may overlap each other, the thin disk and hot spots. volume_size =
+/// sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger. Frames that are being
+/// rendered keep the volumes that they began with. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_volumes(
     context: *mut BhrContext,
@@ -365,8 +343,8 @@ pub unsafe extern "C" fn bhr_set_volumes(
 }
 
 /// Reads the volumes as they are set: *out_count becomes their number, and the first `capacity` of them are written,
-/// packed, each with volume_size as its struct_size. With capacity 0 volumes may be NULL. Errors: INVALID_ARGUMENT for
-/// NULL or a wrong volume_size; volumes are then as they were. Since 0.2.0.
+/// packed, each with volume_size as its struct_size. With capacity 0 volumes may be NULL. After an error volumes are
+/// as they were. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_volumes(
     context: *const BhrContext,
@@ -388,8 +366,7 @@ pub unsafe extern "C" fn bhr_get_volumes(
     }
 }
 
-/// Sets all hot spots of the scene: count of them, packed, at most BHR_MAX_HOT_SPOTS; 0: none, as a new context has
-/// it, and then hot_spots may be NULL. Otherwise as bhr_set_volumes. Errors: INVALID_ARGUMENT as there. Since 0.2.0.
+/// Sets all hot spots of the scene, at most BHR_MAX_HOT_SPOTS, as bhr_set_volumes does the volumes. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_hot_spots(
     context: *mut BhrContext,
@@ -406,8 +383,7 @@ pub unsafe extern "C" fn bhr_set_hot_spots(
     }
 }
 
-/// Reads the hot spots as they are set, as bhr_get_volumes does the volumes. Errors: INVALID_ARGUMENT for NULL or a
-/// wrong hot_spot_size. Since 0.2.0.
+/// Reads the hot spots as they are set, as bhr_get_volumes does the volumes. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_hot_spots(
     context: *const BhrContext,

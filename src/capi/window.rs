@@ -2,9 +2,7 @@
 //! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked
 //! here; nothing behind its pointers is touched.
 
-use super::entry::anywhere;
 use super::pointer::{check_reserved, unknown};
-use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::window::NativeWindow;
@@ -89,14 +87,6 @@ unsafe impl Versioned for BhrWindow {
             reserved: 0,
         }
     }
-}
-
-/// Clears struct_size bytes and sets struct_size; kind and handles have no defaults. Any thread, inside callbacks too.
-/// Since 0.2.0. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_window_init(window: *mut BhrWindow, struct_size: usize) -> BhrStatus {
-    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
-    anywhere("bhr_window_init", || unsafe { versioned::init(window, "window", struct_size) })
 }
 
 /// The host's window, checked. Errors: INVALID_ARGUMENT for NULL, an unknown kind, or a field its kind needs and

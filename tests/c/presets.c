@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* presets.c -- bhr_set_preset and bhr_set_preset_with: the values that bhr.h states, and nothing else; setters change
+/* presets.c -- bhr_set_preset and bhr_set_preset_with: the values that docs/presets.md states, and nothing else; setters change
  * them; whose volumes leave with a look; a choice that is measured; bad input is refused. */
 #include "check.h"
 #include "refusals.h"
@@ -15,7 +15,7 @@ typedef struct Look {
     uint32_t     effects;
 } Look;
 
-/* The table of bhr.h. */
+/* The table of docs/presets.md. */
 static const Look LOOKS[] = {
     {BHR_PRESET_CINEMATIC, 17.0, 3500.0, 0.6, 1.0, 0.4, BHR_DISK_AT_MEDIAN, BHR_SKY_STARS |
      BHR_SKY_MILKY_WAY,
@@ -123,7 +123,7 @@ static BhrPresetOptions options_for(BhrPresetMatter matter) {
     return options;
 }
 
-/* The second table of bhr.h. */
+/* The second table of docs/presets.md. */
 static BhrVolume volume_of(BhrPreset preset) {
     BhrVolume volume;
     CHECK_OK(bhr_volume_init(&volume, sizeof volume));

@@ -6,7 +6,8 @@
 use crate::c_header::{
     HEADER, compiler, constants, functions, library, prototypes, root, run, scratch, structs, table,
 };
-use std::collections::BTreeSet;
+use crate::json::{committed, entries, text};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -77,30 +78,30 @@ fn hosts_of_every_release_run_with_todays_library() {
     }
 }
 
-/// The comment before the line of `text` that holds `word` outside comments.
-fn comment_before(text: &str, word: &str) -> String {
-    let is_word = |line: &str| line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|found| found == word);
-    let declares = |line: &&str| is_word(line) && !line.trim_start().starts_with(['*', '/']);
-    let line = text.lines().find(declares).unwrap_or_else(|| panic!("{word} is not declared"));
-    let before = &text[..line.as_ptr() as usize - text.as_ptr() as usize];
-    // A constant in a table has its comment behind it.
-    let behind = line.split_once("/**<").map(|(_, comment)| comment);
-    let comment = behind.unwrap_or_else(|| before.rfind("/**").map_or("", |begin| &before[begin..]));
-    comment.split(['*', ' ', '\n']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-}
-
 /// A host that must run with older libraries too finds out here what they have not.
 #[test]
 fn what_the_last_release_has_not_says_since_when_it_is_there() {
     let (release, _) = RELEASES[RELEASES.len() - 1];
     let old = header(release);
-    let functions = &functions(HEADER) - &functions(&old);
-    let constants = &constants(HEADER) - &constants(&old);
+    let json = committed();
     let today = env!("CARGO_PKG_VERSION");
-    for name in functions.iter().chain(&constants) {
-        assert_ne!(today, release, "{name} is not in the release of this version: raise the version");
-        let comment = comment_before(HEADER, name);
-        assert!(comment.contains(&format!("Since {today}.")), "{name}: {comment}");
+    let new = |list: &str, names: &BTreeSet<String>| {
+        for name in names {
+            assert_ne!(today, release, "{name} is not in the release of this version: raise the version");
+            let entry = entries(&json, list).iter().find(|entry| entry["name"] == **name).unwrap();
+            assert_eq!(entry["since"], today, "{name}: its comment, or that of its type, ends with @since {today}");
+        }
+    };
+    new("functions", &(&functions(HEADER) - &functions(&old)));
+    new("constants", &(&constants(HEADER) - &constants(&old)));
+    let olds: BTreeMap<_, _> = structs(&old).into_iter().collect();
+    for object in entries(&json, "structs") {
+        let name = text(&object["name"]);
+        let kept = olds.get(name).map_or(0, Vec::len);
+        for field in &object["fields"].as_array().unwrap()[kept..] {
+            let field_name = text(&field["name"]);
+            assert_eq!(field["since"], today, "{name}.{field_name}: its comment ends with @since {today}");
+        }
     }
 }
 

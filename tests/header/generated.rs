@@ -89,65 +89,14 @@ extern "C" {
 #endif
 "#;
 
-/// After the last section of include/bhr.h: {} is a line for each struct with a function *_init.
-const CLOSING: &str = r#"
+/// After the last section.
+const CLOSING: &str = "
 #ifdef __cplusplus
 }
 #endif
 
-/**
- * BHR_INIT(camera); is bhr_camera_init(&camera, sizeof camera); and likewise for a variable of every other struct that
- * begins with struct_size: the variable's type says which. It takes no pointer: write BHR_INIT(*camera). It gives no
- * status, as nothing is wrong with a variable; a program that may meet a library older than the function calls that
- * itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined. Since 0.2.0.
- */
-#if defined(__cplusplus)
-#define BHR_INIT(variable) BhrInit(variable)
-#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
-#define BHR_INIT(variable) ((void)(BHR_INIT_BY_TYPE(variable) == BHR_OK))
-#elif defined(__GNUC__)
-#define BHR_INIT(variable) ((void)(__extension__ BHR_INIT_BY_TYPE(variable) == BHR_OK))
 #endif
-
-/** The structs that BHR_INIT knows, and their functions. */
-#define BHR_INIT_STRUCTS(EACH) \
-{}
-/** The structs of bhr_interop.h, where that is included. */
-#define BHR_INIT_MORE
-/** The struct's case in BHR_INIT. */
-#define BHR_INIT_CASE(Struct, init) , Struct : init
-/** The function that the variable's type asks for, called. */
-#define BHR_INIT_BY_TYPE(variable) \
-    _Generic((variable)BHR_INIT_STRUCTS(BHR_INIT_CASE) BHR_INIT_MORE)(&(variable), sizeof(variable))
-/** The struct's function in C++. */
-#define BHR_INIT_FUNCTION(Struct, init) \
-    inline void BhrInit(Struct &variable) { static_cast<void>(init(&variable, sizeof variable) == BHR_OK); }
-
-#ifdef __cplusplus
-BHR_INIT_STRUCTS(BHR_INIT_FUNCTION)
-#endif
-
-#endif
-"#;
-
-/// After the last section of include/bhr_interop.h.
-const INTEROP_CLOSING: &str = r#"
-#ifdef __cplusplus
-}
-#endif
-
-/** The structs of this header that BHR_INIT knows, and their functions. */
-#define BHR_INIT_INTEROP(EACH) \
-{}
-#ifdef __cplusplus
-BHR_INIT_INTEROP(BHR_INIT_FUNCTION)
-#else
-#undef BHR_INIT_MORE
-#define BHR_INIT_MORE BHR_INIT_INTEROP(BHR_INIT_CASE)
-#endif
-
-#endif
-"#;
+";
 
 /// The longest line of the header.
 const MAX_LINE: usize = 120;
@@ -288,13 +237,13 @@ pub fn generate() -> String {
     let preface = config.header.take().unwrap_or_default();
     let (begin, rest) = preface.trim().split_once("\n *\n * Example\n").expect("the preface has an example");
     let preface = format!("{begin}\n{}\n *\n * Example\n{rest}", contents());
-    with_sections(format!("{preface}\n{OPENING}"), &SECTIONS, &config, CLOSING)
+    with_sections(format!("{preface}\n{OPENING}"), &SECTIONS, &config)
 }
 
 pub fn generate_interop() -> String {
     let preface = config("cbindgen-interop.toml").header.unwrap_or_default();
     let config = cbindgen::Config { header: None, ..config("cbindgen.toml") };
-    with_sections(format!("{}\n{INTEROP_OPENING}", preface.trim()), &INTEROP_SECTIONS, &config, INTEROP_CLOSING)
+    with_sections(format!("{}\n{INTEROP_OPENING}", preface.trim()), &INTEROP_SECTIONS, &config)
 }
 
 fn config(file: &str) -> cbindgen::Config {
@@ -316,23 +265,12 @@ fn contents() -> String {
     lines.join("\n")
 }
 
-fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config, closing: &str) -> String {
+fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config) -> String {
     for (file, title) in sections {
         let path = root().join("src/capi").join(file).with_extension("rs");
         header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, config));
     }
-    let structs = structs_with_init(&header);
-    header + &closing.replacen("{}", &structs, 1)
-}
-
-/// The entries of BHR_INIT_STRUCTS: each struct that a function bhr_*_init(*, size_t) of the header fills.
-fn structs_with_init(header: &str) -> String {
-    let entries = header.split("BhrStatus bhr_").skip(1).filter_map(|function| {
-        let (name, parameters) = function.split_once(");")?.0.split_once("_init(")?;
-        let (of, _) = parameters.strip_suffix(", size_t struct_size")?.split_once(" *")?;
-        (!name.contains('(')).then(|| format!("    EACH({of}, bhr_{name}_init)"))
-    });
-    entries.collect::<Vec<_>>().join(" \\\n")
+    header + CLOSING
 }
 
 /// The declarations of one source file, in that file's order. Types of other sections are named without being known,
@@ -391,13 +329,17 @@ fn declared(block: &str) -> &str {
     after("#define ").or_else(opaque_or_struct).or_else(|| after("(*")).or_else(alias).or_else(function).unwrap()
 }
 
-/// The blocks of a section, one blank line between them. Constants that follow each other make a table, with their
-/// comments beside them, if each comment fits on its line; so do the fields of a struct with short comments.
+/// The blocks of a section, one blank line between them. Constants that follow each other and whose comments fit beside
+/// them make a table; so do the fields of a struct with short comments.
 fn in_tables(blocks: &[&str]) -> String {
-    let is_constant = |block: &&str| block.contains("#define ");
-    let groups = blocks.chunk_by(|a, b| is_constant(a) && is_constant(b));
-    let written = groups.map(|group| table(group).unwrap_or_else(|| with_fields_in_lines(&group.join("\n\n"))));
-    written.collect::<Vec<_>>().join("\n\n")
+    let (mut written, mut rest) = (Vec::new(), blocks);
+    while let [block, after @ ..] = rest {
+        let tables = (1..=rest.len()).map_while(|rows| Some((table(&rest[..rows])?, rows)));
+        let (text, rows) = tables.last().unwrap_or_else(|| (with_fields_in_lines(block), rest.len() - after.len()));
+        written.push(text);
+        rest = &rest[rows..];
+    }
+    written.join("\n\n")
 }
 
 /// `text` with the comment of each struct's field beside it where it fits on the line.
@@ -434,25 +376,33 @@ fn table(group: &[&str]) -> Option<String> {
     lines.iter().all(|line| line.len() <= MAX_LINE && !line.contains('\n')).then(|| lines.join("\n"))
 }
 
-/// BHR_NODISCARD before each function that returns a status; its parameters on a line each where they need it.
+/// BHR_NODISCARD before each function that returns a status; its parameters on as many lines as they need.
 fn with_nodiscard(text: &str) -> String {
     let mut parts = text.split("\nBhrStatus bhr_");
     let mut marked = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (prototype, rest) = part.split_once(");").expect("a prototype ends");
         let line = prototype.split_whitespace().collect::<Vec<_>>().join(" ");
-        let mut line = format!("BHR_NODISCARD BhrStatus bhr_{line});");
-        if line.len() > MAX_LINE {
-            let margin = " ".repeat(line.find('(').unwrap() + 1);
-            line = line.replace(", ", &format!(",\n{margin}"));
-        }
-        marked += &format!("\n{line}{rest}");
+        marked += &format!("\n{}{rest}", filled(&format!("BHR_NODISCARD BhrStatus bhr_{line});")));
     }
     marked
 }
 
-/// Comments of one line on one line, no empty line at the end of a comment, and structs by their typedef, which every
-/// struct has.
+/// A prototype with its parameters below each other's beginning, as many on a line as it holds.
+fn filled(prototype: &str) -> String {
+    let margin = " ".repeat(prototype.find('(').unwrap() + 1);
+    let mut lines = vec![String::new()];
+    for parameter in prototype.split_inclusive(", ") {
+        let room = MAX_LINE - parameter.trim_end().len();
+        match lines.last_mut().filter(|line| line.len() <= room) {
+            Some(line) => line.push_str(parameter),
+            None => lines.push(format!("{margin}{parameter}")),
+        }
+    }
+    lines.iter().map(|line| line.trim_end()).collect::<Vec<_>>().join("\n")
+}
+
+/// Comments without lines of their own for begin and end, and structs by their typedef, which every struct has.
 fn tidy(text: &str) -> String {
     let text = text.replace("typedef struct Bhr", "typedef-Bhr").replace("struct Bhr", "Bhr");
     let text = text.replace("typedef-Bhr", "typedef struct Bhr").replace("\n *\n */", "\n */");
@@ -460,19 +410,19 @@ fn tidy(text: &str) -> String {
     let mut tidied = String::new();
     let mut rest = lines.as_slice();
     while let [first, after @ ..] = rest {
-        rest = match after {
-            [line, end, after @ ..]
-                if first.trim() == "/**" && end.trim() == "*/" && line.len() + "* /".len() <= MAX_LINE =>
-            {
-                let comment = line.trim().trim_start_matches("* ");
-                tidied += &format!("{}{comment} */\n", first.replace("/**", "/** "));
-                after
-            }
-            _ => {
-                tidied += &format!("{first}\n");
-                after
-            }
-        };
+        let end = after.iter().position(|line| line.trim() == "*/").filter(|_| first.trim() == "/**");
+        let (body, code) = end.map_or((&[] as &[&str], after), |end| (&after[..end], &after[end + 1..]));
+        if let [begin, more @ ..] = body {
+            let begun = first.replace("/**", "/** ") + begin.trim().trim_start_matches("* ");
+            let lines: Vec<_> = std::iter::once(begun.as_str()).chain(more.iter().copied()).collect();
+            let fits = lines.last().is_some_and(|line| line.len() + " */".len() <= MAX_LINE);
+            let margin = if fits { String::new() } else { format!("\n{}", first.replace("/**", "")) };
+            tidied += &format!("{}{margin} */\n", lines.join("\n"));
+            rest = code;
+        } else {
+            tidied += &format!("{first}\n");
+            rest = after;
+        }
     }
     tidied
 }

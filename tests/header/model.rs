@@ -85,11 +85,20 @@ fn prose(comment: &str) -> String {
     text.trim().to_owned()
 }
 
-fn since(comment: &str) -> String {
-    let version = comment.rsplit_once("Since ").map(|(_, rest)| rest.split(". ").next().unwrap().trim_end_matches('.'));
-    let is_version =
-        |text: &&str| text.split('.').count() == 3 && text.split('.').all(|part| part.parse::<u32>().is_ok());
-    version.filter(is_version).unwrap_or(FIRST_RELEASE).to_owned()
+/// The version that a comment's tag names, `@since 0.2.0`.
+fn since(comment: &str) -> &str {
+    comment.rsplit_once("@since ").map_or(FIRST_RELEASE, |(_, version)| version.split_whitespace().next().unwrap())
+}
+
+/// A comment without that tag, which `since` of its entry says.
+fn untagged(comment: &str) -> String {
+    comment.rsplit_once("@since ").map_or(comment, |(text, _)| text.trim_end()).to_owned()
+}
+
+/// The later of two versions.
+fn later<'a>(a: &'a str, b: &'a str) -> &'a str {
+    let number = |version: &str| version.split('.').map(|part| part.parse::<u32>().unwrap()).collect::<Vec<_>>();
+    if number(a) < number(b) { b } else { a }
 }
 
 /// The size and the alignment of types that C and the header's sections define.
@@ -254,7 +263,7 @@ fn fields(body: &str, types: &Types) -> (Vec<Value>, u64, u64) {
         field.insert("offset".into(), offset.into());
         field.insert("size".into(), size.into());
         field.insert("since".into(), since(&comment).into());
-        field.insert("documentation".into(), comment.into());
+        field.insert("documentation".into(), untagged(&comment).into());
         found.push(Value::Object(field));
         (end, widest) = (offset + size, widest.max(alignment));
         rest = after.trim_start();
@@ -266,6 +275,27 @@ fn fields(body: &str, types: &Types) -> (Vec<Value>, u64, u64) {
 fn definition(code: &str) -> Option<(&str, &str)> {
     let (name, value) = code.strip_prefix("#define ")?.split_once(char::is_whitespace)?;
     Some((name, value.trim()))
+}
+
+/// Makes each field as new as its struct at least, and each constant as new as its type, or what its bits go into,
+/// because they have no tags of their own then.
+fn since_their_types(lists: &mut BTreeMap<&str, Vec<Value>>) {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let entries = ["structs", "enumerations", "functions"].iter().filter_map(|list| lists.get(list)).flatten();
+    let of: BTreeMap<_, _> = entries.map(|entry| (text(&entry["name"]), text(&entry["since"]))).collect();
+    let renew = |part: &mut Value, owner: &str| {
+        let owners = of.get(owner).map_or(FIRST_RELEASE, String::as_str);
+        part["since"] = later(&text(&part["since"]), owners).into();
+    };
+    for object in lists.get_mut("structs").into_iter().flatten() {
+        let name = text(&object["name"]);
+        object["fields"].as_array_mut().into_iter().flatten().for_each(|field| renew(field, &name));
+    }
+    for constant in lists.get_mut("constants").into_iter().flatten() {
+        let owner = constant.get("bits_of").unwrap_or(&constant["type"]);
+        let owner = text(owner).split('.').next().unwrap_or_default().to_owned();
+        renew(constant, &owner);
+    }
 }
 
 /// The header as include/bhr.json has it. `type_of_constant` says which type a constant has in the Rust sources,
@@ -288,7 +318,7 @@ pub fn of_header(
         let mut entry = Map::new();
         entry.insert("section".into(), item.section.into());
         entry.insert("since".into(), since(&item.comment).into());
-        entry.insert("documentation".into(), item.comment.as_str().into());
+        entry.insert("documentation".into(), untagged(&item.comment).into());
         let (list, name) = if let Some((name, value)) = definition(code) {
             let value = types.number(value);
             types.constants.insert(name.to_owned(), value);
@@ -354,6 +384,7 @@ pub fn of_header(
         let is_its = |name: &&String| type_of_constant[*name] == enumeration["name"].as_str().unwrap();
         enumeration["constants"] = types.order.iter().filter(is_its).cloned().collect();
     }
+    since_their_types(&mut lists);
     let number = |name: &str| types.constants[name];
     let version = ["MAJOR", "MINOR", "PATCH"].map(|part| number(&format!("BHR_VERSION_{part}")).to_string()).join(".");
     let preface = header.split("*/").next().unwrap();

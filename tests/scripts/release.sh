@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+# packaging/release on a copy of this checkout that is ready for a release, and on copies with faults. Sourced by
+# tests/scripts/run. What builds (tarball, deb, wheel, abi) is tested by hand before a release, and its commands in
+# tests/install/packages.sh.
+# shellcheck shell=bash
+
+# ready: a repository in which everything says that its version is released.
+ready() {
+    local copy=$scratch/ready
+    rm -rf -- "$copy" "$scratch/released"
+    mkdir -p -- "$copy"
+    (
+        cd -- "$root" && git ls-files -z --cached --others --exclude-standard |
+            while IFS= read -r -d '' name; do [ ! -e "$name" ] || printf '%s\0' "$name"; done |
+            tar --null --no-recursion -T - -cf - | tar -C "$copy" -xf - && cd -- "$copy" || exit 1
+        sed -i 's/^\(## [0-9.]*\), which is not released yet$/\1, 2026-12-01/' CHANGELOG.md
+        git init --quiet && git config user.name tests && git config user.email tests@localhost && commit ready
+    )
+}
+commit() { git add --all && git -c gc.auto=0 -c commit.gpgsign=false commit --quiet -m "$1"; }
+release_version() { sed -n 's/^version = "\(.*\)"$/\1/p' "$root/Cargo.toml" | head -n 1; }
+
+release_is_made() {
+    local version made=$scratch/released
+    version=$(release_version)
+    ready && cd -- "$scratch/ready" && packaging/release --dry-run "$made" && [ ! -e "$made" ] &&
+        packaging/release "$made" source sums && (cd -- "$made" && sha256sum -c SHA256SUMS) &&
+        [ "$(cd -- "$made" && echo *)" = "SHA256SUMS bhr-$version.tar.gz" ] &&
+        tar -xzf "$made/bhr-$version.tar.gz" -C "$scratch" && diff -r --exclude=.git . "$scratch/bhr-$version" &&
+        cp -- "$made/bhr-$version.tar.gz" "$scratch/first.tar.gz" && packaging/release "$made" source sums >/dev/null &&
+        cmp -- "$made/bhr-$version.tar.gz" "$scratch/first.tar.gz" || return 1
+    # A file of another version is left over, and a part that does not exist.
+    : >"$made/bhr-0.0.9.tar.gz"
+    ! packaging/release "$made" sums && ! packaging/release "$made" flatpak &&
+        git tag "v$version" && packaging/release --dry-run "$made"
+}
+
+# refuses WORDS COMMAND...: after the command, nothing is made, and these words say why.
+refuses() {
+    local words=$1
+    shift
+    ("$@") && ! packaging/release "$scratch/released" source >"$scratch/said" 2>&1 &&
+        grep -F -- "$words" "$scratch/said" && [ ! -e "$scratch/released" ] || { cat -- "$scratch/said" && return 1; }
+    git reset --quiet --hard ready && git clean -fdq
+}
+edit() { sed -i "$1" "$2" && ! git diff --quiet && commit "$2"; }
+release_refuses() {
+    ready && cd -- "$scratch/ready" && git tag ready || return 1
+    refuses 'include/bhr.h says version 9.' edit 's/^\(#define BHR_VERSION_MAJOR\) [0-9]*/\1 9/' include/bhr.h &&
+        refuses 'vcpkg.json says version 9.0' \
+            edit 's/"version": ".*"/"version": "9.0"/' packaging/vcpkg/bhr/vcpkg.json &&
+        refuses 'bhr.rb says version 9.0' edit 's/^  version ".*"/  version "9.0"/' packaging/homebrew/bhr.rb &&
+        refuses 'Cargo.lock says version 9.0.0' edit '/^name = "libbhr"/{n;s/".*"/"9.0.0"/}' Cargo.lock &&
+        refuses 'metadata.capi.library, says version 9.0.0' \
+            edit '/^\[package.metadata.capi.library/,/^$/s/^version = ".*"/version = "9.0.0"/' Cargo.toml &&
+        refuses 'a version of its own' edit 's|^path = "../Cargo.toml"|path = "version.txt"|' python/pyproject.toml &&
+        refuses 'has no heading for' edit "/^## $(release_version),/d" CHANGELOG.md &&
+        refuses 'CHANGELOG.md says: ##' edit 's/, 2026-12-01$/, which is not released yet/' CHANGELOG.md &&
+        refuses 'not committed: ?? note.txt' touch note.txt &&
+        refuses 'not committed: M README.md' sed -i 1d README.md &&
+        git tag "v$(release_version)" && refuses 'is on another commit' edit 1d README.md
+}
+
+check "a release is made" release_is_made
+check "faults of a release are found" release_refuses
