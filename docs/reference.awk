@@ -33,7 +33,8 @@ first && title_next && /^ \* [^ ]/ && !/[.,;:]$/ && length($0) < 40 {
 first {
     title_next = $0 ~ /^ \*$/
     sub(code ? "^ [*]   " : "^ [*] +", " * ")
-    gsub(/"@/, "\"@@") # a tag that is spoken of
+    # A tag that is spoken of is no tag.
+    gsub(/"@/, "\"@@")
     print
     next
 }

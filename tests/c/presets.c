@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* presets.c -- bhr_set_preset and bhr_set_preset_with: the values that docs/presets.md states, and nothing else; setters change
- * them; whose volumes leave with a look; a choice that is measured; bad input is refused. */
+/* presets.c -- bhr_set_preset and bhr_set_preset_with: the values that docs/presets.md states, and nothing else;
+ * setters change them; whose volumes leave with a look; a choice that is measured; bad input is refused. */
 #include "check.h"
 #include "refusals.h"
 
