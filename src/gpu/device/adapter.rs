@@ -179,7 +179,7 @@ pub fn absence(backend: Backend) -> &'static str {
 /// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
 /// costs Mesa half a megabyte that it never frees.
 pub fn forget_drivers() {
-    let forgotten = std::mem::replace(&mut *found(), NOTHING);
+    let forgotten = std::mem::replace(&mut *found(), NONE_FOUND);
     let _driver = driver_lock::lock();
     drop(forgotten);
 }
@@ -226,9 +226,9 @@ const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 /// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
 /// under the host. This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other
 /// way round.
-static FOUND: Mutex<[Found; 2]> = Mutex::new(NOTHING);
+static FOUND: Mutex<[Found; 2]> = Mutex::new(NONE_FOUND);
 
-const NOTHING: [Found; 2] = [const { Found { wayland: false, adapters: (None, Vec::new()) } }; 2];
+const NONE_FOUND: [Found; 2] = [const { Found { wayland: false, adapters: (None, Vec::new()) } }; 2];
 
 /// The result of a search.
 struct Found {
