@@ -217,10 +217,17 @@ static int write_fits(const Images *images, const Measured *found, const char *p
     const Settings *s = images->s;
     const double    degrees = images->pixel * 180.0 / PI, middle = 0.5 * (s->pixels + 1.0);
     const double    beam = s->beam / 3600e6;
-    FitsCard        cards[32 + BHR_MAX_VOLUMES] = {
+    FitsCard        cards[36 + BHR_MAX_VOLUMES] = {
         {"OBJECT", FITS_TEXT, 0.0, s->target.object, "a model of it"},
         {"TELESCOP", FITS_TEXT, 0.0, "bhr", "examples-c/observatory.c"},
-        {"BUNIT", FITS_TEXT, 0.0, "JY/PIXEL", "sums to the flux"},
+        /* Units are case-sensitive (FITS 4.0, section 4.3). */
+        {"BUNIT", FITS_TEXT, 0.0, "Jy/pixel", "sums to the flux"},
+        /* A model was observed on no day. Programs that compare it with observations want one, and an epoch for its
+         * place: the day of the observation that it is a model of, which also makes equal runs write equal files. DATE,
+         * when the file was written, is left out for that. ehtim reads MJD, other programs the standard's names. */
+        {"DATE-OBS", FITS_TEXT, 0.0, s->target.date, "nominal: of the observation that is modelled"},
+        {"MJD-OBS", FITS_NUMBER, s->target.day, NULL, "d, the same day"},
+        {"MJD", FITS_NUMBER, s->target.day, NULL, "d, the same day, for ehtim"},
         {"FREQ", FITS_NUMBER, found->ghz * 1e9, NULL, "Hz"},
         {"BMAJ", FITS_NUMBER, beam, NULL, "deg, width at half of the peak; 0: no beam"},
         {"BMIN", FITS_NUMBER, beam, NULL, "deg"},

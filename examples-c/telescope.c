@@ -19,10 +19,10 @@ const Choice TARGETS[] = {{"sgra", 0}, {"m87", 1}, {NULL, 0}};
  * (2022, ApJL 930, L16); where its spin points is not known. M87*: mass, distance and inclination of the EHT 2019 (ApJL
  * 875, L1 and L5), place of Lambert and Gontier 2009 (A&A 493, 317); the jet that comes towards us lies at the position
  * angle of 288 degrees and the spin points away from us, opposite to it; the flux of the compact part that L5 gives the
- * models. */
+ * models. The days are those of the pictures in the first papers of both series (ApJL 930, L12, and 875, L1). */
 const Target TARGET_LIST[] = {
-    {"sgra", "Sgr A*", 4.297e6, 8.277, 266.4168167, -29.0078250, 30.0, 0.0, 2.4},
-    {"m87", "M87*", 6.5e9, 16800.0, 187.7059308, 12.3911233, 163.0, 108.0, 0.5},
+    {"sgra", "Sgr A*", 4.297e6, 8.277, 266.4168167, -29.0078250, 30.0, 0.0, 2.4, "2017-04-07", 57850.0},
+    {"m87", "M87*", 6.5e9, 16800.0, 187.7059308, 12.3911233, 163.0, 108.0, 0.5, "2017-04-11", 57854.0},
 };
 
 double metres_of(const Target *target) {

@@ -25,6 +25,8 @@ typedef struct Target {
     double      inclination;    /* degrees between the spin and the way to us: above 90 the spin points away */
     double      position_angle; /* degrees of the projected spin, from north over east */
     double      flux;           /* Jy at 230 GHz */
+    const char *date;           /* a day of the Event Horizon Telescope on which it was seen so, and that day in MJD */
+    double      day;
 } Target;
 
 extern const Choice TARGETS[]; /* indices of TARGET_LIST */

@@ -4,6 +4,8 @@ Needs astropy."""
 import sys
 
 from astropy.io import fits
+from astropy.time import Time
+from astropy.units import Unit
 from astropy.wcs import WCS
 
 for path in sys.argv[1:]:
@@ -11,6 +13,8 @@ for path in sys.argv[1:]:
         file.verify("exception")
         image = file[0]
         header = image.header
+        assert Unit(header["BUNIT"], format="fits", parse_strict="raise") == Unit("Jy/pixel")
+        assert Time(header["DATE-OBS"]).mjd == header["MJD-OBS"]
         assert image.data.dtype.itemsize == 8 and abs(image.data.sum() / header["FLUX"] - 1) < 1e-12
         wcs = WCS(header)
         middle = wcs.pixel_to_world((header["NAXIS1"] - 1) / 2, (header["NAXIS2"] - 1) / 2)

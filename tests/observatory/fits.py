@@ -4,6 +4,7 @@ printed about them: fits.py FOLDER PRINTED PIXELS FOV BEAM, the last two in micr
 import re
 import struct
 import sys
+from datetime import date
 from pathlib import Path
 
 
@@ -53,7 +54,11 @@ def check(line, folder, pixels, fov, beam):
     total = sum(values)
     assert abs(total / float(kept) - 1) < 1e-5 and abs(total / cards["FLUX"] - 1) < 1e-12, (total, kept)
     assert total <= float(flux) * 1.00001 and abs(cards["FLUXSRC"] / float(flux) - 1) < 1e-5
-    assert cards["BUNIT"] == "JY/PIXEL" and cards["FREQ"] == float(ghz) * 1e9
+    # Units are case-sensitive: Jy and pixel, of FITS 4.0's tables 3 and 4.
+    assert cards["BUNIT"] == "Jy/pixel" and cards["FREQ"] == float(ghz) * 1e9
+    # The nominal day; MJD 51544 is 2000-01-01.
+    day = (date.fromisoformat(cards["DATE-OBS"]) - date(2000, 1, 1)).days + 51544
+    assert cards["MJD"] == cards["MJD-OBS"] == day and cards["DATE-OBS"].startswith("2017-04-"), day
     # A degree has 3.6e9 microarcseconds.
     assert abs(cards["CDELT2"] * 3.6e9 * pixels / fov - 1) < 1e-12 and cards["CDELT1"] == -cards["CDELT2"]
     assert abs(cards["BMAJ"] * 3.6e9 - beam) < 1e-9 and cards["BMIN"] == cards["BMAJ"]
