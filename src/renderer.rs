@@ -3,29 +3,30 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
+mod made;
 mod presets;
 
 use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
-use crate::image::{Attribute, Copiers, ImageMut, Layer, PixelFormat, save_layers};
+use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::interop::{Semaphore, Target};
-use crate::job::{Job, JobRequest, JobTarget, OutputFrame, OutputTarget, Worker};
+use crate::job::{Job, JobRequest, JobTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, MOST_OUTPUTS, Output, Preset, Ray, Region, Scene, Transfer, View};
+use crate::scene::{Hit, Preset, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
+use made::{MadeFrames, Place};
 use parking_lot::Mutex;
 use presets::DepthCost;
 use shared::HostsThings;
-use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
+mod outputs;
 mod shared;
 
 pub use shared::{HostSync, SharedOutput, Submits};
@@ -61,6 +62,8 @@ pub struct Renderer {
     tracer: SharedTracer,
     stats: StatsBoard,
     copiers: Arc<Copiers>,
+    /// How the pixels were made that hosts may have.
+    made: MadeFrames,
     /// How long the presets' frames with depth take, as far as that was measured.
     depth_costs: [Option<DepthCost>; Preset::COUNT],
     /// The threads for jobs, from the first job on.
@@ -106,6 +109,7 @@ impl Renderer {
             tracer: Arc::new(Mutex::new(tracer)),
             stats: StatsBoard::default(),
             copiers: Arc::default(),
+            made: MadeFrames::default(),
             depth_costs: Default::default(),
             worker: None,
             surfaces: Vec::new(),
@@ -369,6 +373,8 @@ impl Renderer {
         };
         let scene = self.behind(&request.region, [request.width, request.height])?;
         let rendered = self.tracer.lock().render(&scene, &request, &mut sink, progress);
+        // An image that is written in part is of this frame as well.
+        self.made.remember(&self.scene, &request.region, [Place::of(target)]);
         let stats = rendered.map_err(|mut error| {
             if target.is_touched() {
                 error.message += PARTLY_WRITTEN;
@@ -432,7 +438,10 @@ impl Renderer {
         self.check_device()?;
         self.help_to_write(&mut target);
         let scene = self.behind(&request.region, [request.width, request.height])?.into_owned();
-        self.enqueue(scene, JobTarget::Memory(request, target))
+        let (place, region) = (Place::of(&target), request.region);
+        let job = self.enqueue(scene, JobTarget::Memory(request, target))?;
+        self.made.remember(&self.scene, &region, [place]);
+        Ok(job)
     }
 
     fn enqueue(&mut self, scene: Scene, target: JobTarget) -> Result<Job> {
@@ -441,112 +450,6 @@ impl Renderer {
             None => self.worker.insert(Worker::new()?),
         };
         worker.enqueue(JobRequest::new(scene, target, self.tracer.clone(), self.stats.clone()))
-    }
-
-    /// The part of the full frame that images of outputs hold. Errors: INVALID_ARGUMENT for images of several sizes, a
-    /// region that they overrun, and formats that do not go with the outputs.
-    fn check_outputs(&self, targets: &[OutputTarget<'_>], region: Option<Region>) -> Result<Region> {
-        let size = |target: &OutputTarget<'_>| [target.target.width(), target.target.height()];
-        let Some([width, height]) = targets.first().map(size) else {
-            return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
-        };
-        for (index, target) in targets.iter().enumerate() {
-            let [w, h] = size(target);
-            if [w, h] != [width, height] {
-                return Err(Error::argument(format!(
-                    "outputs[{index}] image is {w} x {h}; outputs[0] has {width} x {height}, and all must be of one \
-                     size"
-                )));
-            }
-            let (given, wanted) = (target.target.format(), target.output.format());
-            if let Some(wanted) = wanted.filter(|wanted| *wanted != given) {
-                return Err(Error::argument(format!(
-                    "outputs[{index}] image format is {given}; its kind takes {wanted}"
-                )));
-            }
-        }
-        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
-        region.check_image(width, height)?;
-        Ok(region)
-    }
-
-    /// The outputs of a frame. Errors: as `check_outputs`; of the picture, those of `request`.
-    fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
-        let checked = self.check_outputs(&targets, region)?;
-        for OutputTarget { output, target, transparent } in &mut targets {
-            if *output != Output::Light {
-                self.scene.check_one_eye("an output beside the light")?;
-            }
-            if *output == Output::Light {
-                self.request(target.format(), [target.width(), target.height()], *transparent, region)?;
-            }
-            self.help_to_write(target);
-        }
-        Ok(OutputFrame::new(targets, checked))
-    }
-
-    /// Writes outputs to an EXR file, with all parameters of the scene as it is now. Errors: as `check_outputs` and
-    /// [`save_layers`].
-    pub fn save_outputs(&self, targets: &[OutputTarget<'_>], region: Option<Region>, path: &Path) -> Result<()> {
-        let region = self.check_outputs(targets, region)?;
-        let AdapterInfo { backend, name, driver, .. } = &self.adapter;
-        let about = [("version", env!("CARGO_PKG_VERSION").into()), ("backend", backend.to_string())];
-        let about = about.into_iter().chain([("adapter", name.clone()), ("driver", driver.clone())]);
-        let about = about.map(|(name, text)| (format!("bhr.{name}"), Attribute::Text(text)));
-        let attributes = about.chain(self.scene.parameters(&region)).collect::<Vec<_>>();
-        let layers = targets.iter().enumerate().map(|(index, OutputTarget { output, target, .. })| {
-            if *output == Output::Light && target.format() == PixelFormat::R32F {
-                return Err(Error::argument(format!(
-                    "outputs[{index}] image format is R32F: in files of layers a view's values are the kind VIEW"
-                )));
-            }
-            Ok(Layer { channels: output.channels(), image: target.as_image_ref() })
-        });
-        save_layers(&layers.collect::<Result<Vec<_>>>()?, &attributes, path)
-    }
-
-    /// Renders the outputs of one frame; `region` as in [`Self::render`].
-    ///
-    /// Errors: as [`Self::render`]; INVALID_ARGUMENT for images of several sizes, or of formats that do not go with
-    /// their outputs.
-    pub fn render_outputs(
-        &mut self,
-        targets: Vec<OutputTarget<'_>>,
-        region: Option<Region>,
-        progress: &mut Progress<'_>,
-    ) -> Result<()> {
-        let start = Instant::now();
-        let mut frame = self.output_frame(targets, region)?;
-        let scene = self.seen_in(&frame)?;
-        let rendered = frame.render(&mut self.tracer.lock(), &scene, progress);
-        let stats = rendered.map_err(|mut error| {
-            if frame.is_touched() {
-                error.message += PARTLY_WRITTEN;
-            }
-            error
-        })?;
-        self.stats.publish(stats, start.elapsed());
-        Ok(())
-    }
-
-    /// Orders the outputs of a frame, as [`Self::render_in_background`] does a picture. Errors: as there, and as
-    /// [`Self::render_outputs`].
-    pub fn render_outputs_in_background(
-        &mut self,
-        targets: Vec<OutputTarget<'static>>,
-        region: Option<Region>,
-    ) -> Result<Job> {
-        let frame = self.output_frame(targets, region)?;
-        self.scene.lens(&frame.region())?;
-        self.check_device()?;
-        let scene = self.seen_in(&frame)?.into_owned();
-        self.enqueue(scene, JobTarget::Outputs(frame))
-    }
-
-    /// The scene of outputs: with the occluder if one of them is the picture, which alone regards it. Errors: as
-    /// [`Self::behind`].
-    fn seen_in(&self, frame: &OutputFrame<'_>) -> Result<Cow<'_, Scene>> {
-        if frame.has_light() { self.behind(&frame.region(), frame.size()) } else { Ok(Cow::Borrowed(&self.scene)) }
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for

@@ -371,6 +371,11 @@ impl<'a> ImageMut<'a> {
         self.copiers = Some(copiers);
     }
 
+    /// The address of the top-left pixel.
+    pub fn address(&self) -> usize {
+        self.rows.top_left.addr()
+    }
+
     /// The image's pixels, for reading.
     pub fn as_image_ref(&self) -> ImageRef<'_> {
         ImageRef { rows: self.rows, memory: PhantomData }

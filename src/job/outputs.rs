@@ -41,6 +41,11 @@ impl<'a> OutputFrame<'a> {
         self.targets.first().map_or([0, 0], |first| [first.target.width(), first.target.height()])
     }
 
+    /// The images that are written.
+    pub fn images(&self) -> impl Iterator<Item = &ImageMut<'a>> {
+        self.targets.iter().map(|target| &target.target)
+    }
+
     /// The picture itself is among them.
     pub fn has_light(&self) -> bool {
         self.targets.iter().any(|target| target.output == Output::Light)

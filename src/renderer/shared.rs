@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames of a renderer that stay on the GPU: its targets and semaphores, the host's things before the camera, which
-//! may lie in a target, and renderers on a host's device. Knows
-//! nothing of C.
+//! may lie in a target, and renderers on a host's device. Knows nothing of C.
 
+use super::made::Place;
 use super::{Renderer, RendererOptions};
 use crate::error::{Error, Result};
 use crate::gpu::{
@@ -326,19 +326,22 @@ impl Renderer {
             // The other outputs do not regard the host's things.
             None => self.scene.clone(),
         };
+        let places = frame.images.iter().map(Place::of).collect::<Vec<_>>();
         let job_request = JobRequest::new(scene, JobTarget::Shared(frame), self.tracer.clone(), self.stats.clone());
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),
         };
-        match asks {
+        let job = match asks {
             None => worker.submit_now(job_request),
             Some(sync) => {
                 worker.check_room()?;
                 ask_signals(&sync)?;
                 worker.enqueue(job_request).inspect_err(|_| sync.withdraw())
             }
-        }
+        }?;
+        self.made.remember(&self.scene, &request.region, places);
+        Ok(job)
     }
 
     /// Ends targets and semaphores, for a reason.

@@ -41,6 +41,7 @@ pub use lensing::{KerrThreshold, Lensing};
 pub use occluder::{Distances, Occluder};
 pub use on_device::OnDevice;
 pub use output::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind};
+pub use parameters::Made;
 pub use preset::{Preset, PresetMatter};
 pub use quality::{LensTables, Method, Quality, VolumeResolution};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray, Transfer};

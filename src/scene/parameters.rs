@@ -46,30 +46,54 @@ fn flag(on: bool) -> f64 {
     f64::from(u8::from(on))
 }
 
+/// How a frame was made: all parameters of its scene, without pictures, which may be large.
+pub struct Made {
+    scene: Scene,
+    has_map: bool,
+    region: Region,
+}
+
 impl Scene {
-    /// All of them, in order; `region` is what an image is of its frame.
-    pub fn parameters(&self, region: &Region) -> Vec<(String, Attribute)> {
+    /// The scene as it is now, for a frame of which an image shows `region`.
+    pub fn made(&self, region: &Region) -> Made {
+        let has_map = self.sky_map.is_some() || self.sky_picture.is_some();
+        let mut scene = self.clone();
+        (scene.sky_map, scene.sky_picture, scene.occluder, scene.given_stars) = (None, None, None, None);
+        Made { scene, has_map, region: *region }
+    }
+}
+
+impl Made {
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
+    /// All of them, in order.
+    pub fn parameters(&self) -> Vec<(String, Attribute)> {
         let mut list = Parameters::default();
-        let Region { full_width, full_height, x, y } = *region;
+        let Region { full_width, full_height, x, y } = self.region;
+        let scene = &self.scene;
         let region = [("full_width", full_width), ("full_height", full_height), ("x", x), ("y", y)];
         list.numbers("bhr.region", region.map(|(name, number)| (name, number.into())));
-        let Hole { mass, spin, axis } = self.hole;
+        let Hole { mass, spin, axis } = scene.hole;
         list.numbers("bhr.hole", [("mass", mass), ("spin", spin)]);
         list.vector("bhr.hole.axis", &axis.to_array());
-        self.put_camera(&mut list);
-        list.numbers("bhr", [("time", self.time), ("effects", self.effects.0.into())]);
-        list.word("bhr.view".into(), &self.view);
-        match &self.disk {
+        scene.put_camera(&mut list);
+        list.numbers("bhr", [("time", scene.time), ("effects", scene.effects.0.into())]);
+        list.word("bhr.view".into(), &scene.view);
+        match &scene.disk {
             Some(disk) => put_disk(&mut list, disk),
             None => list.put("bhr.disk", Attribute::Text("NONE".into())),
         }
-        self.volumes.iter().zip(0..).for_each(|(volume, i)| put_volume(&mut list, volume, i));
-        self.hot_spots.iter().zip(0..).for_each(|(spot, i)| put_hot_spot(&mut list, spot, i));
-        self.put_sky(&mut list);
-        self.put_film_and_quality(&mut list);
+        scene.volumes.iter().zip(0..).for_each(|(volume, i)| put_volume(&mut list, volume, i));
+        scene.hot_spots.iter().zip(0..).for_each(|(spot, i)| put_hot_spot(&mut list, spot, i));
+        scene.put_sky(self.has_map, &mut list);
+        scene.put_film_and_quality(&mut list);
         list.0
     }
+}
 
+impl Scene {
     fn put_camera(&self, list: &mut Parameters) {
         let Camera {
             projection,
@@ -96,13 +120,13 @@ impl Scene {
         vectors.iter().for_each(|(name, v)| list.vector(&format!("bhr.camera.{name}"), &v.to_array()));
     }
 
-    fn put_sky(&self, list: &mut Parameters) {
+    fn put_sky(&self, has_map: bool, list: &mut Parameters) {
         let Sky { flags, stars_brightness, map_brightness, orientation, seed } = self.sky;
         let numbers = [
             ("flags", flags.into()),
             ("stars_brightness", stars_brightness),
             ("map_brightness", map_brightness),
-            ("has_map", flag(self.sky_map.is_some() || self.sky_picture.is_some())),
+            ("has_map", flag(has_map)),
         ];
         list.numbers("bhr.sky", numbers);
         list.vector("bhr.sky.orientation", &orientation.to_array());
@@ -271,7 +295,7 @@ mod tests {
         (0..HotSpot::MOST).for_each(|_| scene.hot_spots.push(HotSpot::default()));
         scene.camera.motion = Motion::FreeFall;
         scene.hole.spin = 0.1;
-        let list = scene.parameters(&Region { full_width: 3, full_height: 4, x: 1, y: 2 });
+        let list = scene.made(&Region { full_width: 3, full_height: 4, x: 1, y: 2 }).parameters();
         let mut names = list.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
         // OpenEXR's readers before 2.0 take names of 31 bytes.
         assert!(names.iter().all(|name| name.len() <= 31), "{names:?}");

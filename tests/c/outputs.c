@@ -180,6 +180,93 @@ static void layers(BhrContext *context, const char *folder) {
     }
 }
 
+/* A number among the attributes of a file of outputs, which is its name, "double", 8, and eight bytes; NAN without it,
+ * or where the number's bytes are in another order on this machine. */
+static double attribute_of(const char *path, const char *name) {
+    static const char        kind[] = "double\0\10\0\0";
+    static unsigned char     head[16384];
+    double                   value = NAN;
+    const size_t             length = strlen(name) + 1;
+    FILE                    *file = fopen(path, "rb");
+    const size_t             read = file == NULL ? 0 : fread(head, 1, sizeof head, file);
+    for (size_t at = 0; at + length + sizeof kind + sizeof value <= read; at++) {
+        if (memcmp(head + at, name, length) == 0 && memcmp(head + at + length, kind, sizeof kind) == 0) {
+            memcpy(&value, head + at + length + sizeof kind, sizeof value);
+        }
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+    return value;
+}
+
+/* Saves a depth image and checks the time and the width of the full frame that the file has. */
+static void saved_as(BhrContext *context, const BhrImage *image, const char *path, double time, double full, int line) {
+    const BhrOutput output = output_of(BHR_OUTPUT_DEPTH, 0, image);
+    if (CHECK_OK(bhr_save_outputs(context, &output, sizeof output, 1, path))) {
+        const double found = attribute_of(path, "bhr.time"), width = attribute_of(path, "bhr.region.full_width");
+        CHECK(found == time && width == full, "line %d: the file has the time %g and the width %g, not %g and %g", line,
+              found, width, time, full);
+        remove(path);
+    }
+}
+
+/* A file has the scene of the frame that its pixels are of, whatever the scene is when it is saved. */
+static void scenes_of_frames(BhrContext *context, const char *folder) {
+    static float    pixels[3][PIXELS], light[PIXELS * 4];
+    const BhrRegion region = {sizeof region, 4 * WIDTH, 4 * HEIGHT, 16, 8, 0};
+    BhrImage        depth[3];
+    BhrOutput       each[3];
+    BhrJob         *jobs[2] = {NULL, NULL};
+    char            path[512];
+    snprintf(path, sizeof path, "%s/scene.exr", folder);
+    for (size_t i = 0; i < 3; i++) {
+        depth[i] = image_of(BHR_FORMAT_R32F, WIDTH, HEIGHT, pixels[i], sizeof pixels[i]);
+        each[i] = output_of(BHR_OUTPUT_DEPTH, 0, &depth[i]);
+    }
+    /* Two frames; the older one is saved last. */
+    CHECK_OK(bhr_set_time(context, 1.5));
+    CHECK_OK(bhr_render_outputs(context, &each[0], sizeof *each, 1, NULL));
+    CHECK_OK(bhr_set_time(context, 2.5));
+    CHECK_OK(bhr_render_outputs(context, &each[1], sizeof *each, 1, NULL));
+    CHECK_OK(bhr_set_time(context, 3.5));
+    saved_as(context, &depth[1], path, 2.5, WIDTH, __LINE__);
+    saved_as(context, &depth[0], path, 1.5, WIDTH, __LINE__);
+    /* Pixels of no frame: the scene as it is. */
+    saved_as(context, &depth[2], path, 3.5, WIDTH, __LINE__);
+    /* Jobs that end in another scene than they were ordered in, one of them a part of its frame. */
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_OK(bhr_render_outputs(context, &each[1], sizeof *each, 1, &jobs[0]));
+    CHECK_OK(bhr_set_time(context, 4.5));
+    CHECK_OK(bhr_set_region(context, NULL));
+    CHECK_OK(bhr_render_outputs(context, &each[2], sizeof *each, 1, &jobs[1]));
+    CHECK_OK(bhr_set_time(context, 5.5));
+    for (size_t i = 0; i < 2; i++) {
+        CHECK_OK(bhr_job_wait(jobs[i], UINT64_MAX, NULL));
+        bhr_job_destroy(jobs[i]);
+    }
+    saved_as(context, &depth[1], path, 3.5, 4 * WIDTH, __LINE__);
+    saved_as(context, &depth[2], path, 4.5, WIDTH, __LINE__);
+    saved_as(context, &depth[0], path, 1.5, WIDTH, __LINE__);
+    /* A picture of bhr_render_image takes the place of what was in its memory. */
+    const BhrImage  picture = image_of(BHR_FORMAT_RGBA32F, WIDTH, HEIGHT, light, sizeof light);
+    const BhrOutput both[] = {output_of(BHR_OUTPUT_LIGHT, 0, &picture), each[0]};
+    CHECK_OK(bhr_render_outputs(context, both, sizeof *both, 2, NULL));
+    CHECK_OK(bhr_set_time(context, 6.5));
+    CHECK_OK(bhr_render_image(context, &picture));
+    CHECK_OK(bhr_set_time(context, 0.0));
+    CHECK_OK(bhr_save_outputs(context, both, sizeof *both, 2, path));
+    CHECK(attribute_of(path, "bhr.time") == 6.5, "a picture's file has the time %g", attribute_of(path, "bhr.time"));
+    remove(path);
+    /* A refused frame changes no pixel, and the scene of none. */
+    BhrImage wrong = depth[0];
+    wrong.format = BHR_FORMAT_RGBA32F;
+    wrong.width = 1;
+    const BhrOutput refused = output_of(BHR_OUTPUT_DEPTH, 0, &wrong);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "format", bhr_render_outputs(context, &refused, sizeof refused, 1, NULL));
+    saved_as(context, &depth[0], path, 5.5, WIDTH, __LINE__);
+}
+
 static void check_bad(Watch *watch, const BhrOutput *bad, uint32_t count, const char *words, int line) {
     BhrJob *job = (BhrJob *)&job;
     for (int async = 0; async <= 1; async++) {
@@ -386,6 +473,7 @@ int main(int argc, char **argv) {
     every_kind(context);
     ways(context);
     layers(context, argc > 2 ? argv[2] : ".");
+    scenes_of_frames(context, argc > 2 ? argv[2] : ".");
     watch_begin(&watch, context);
     fields(&watch);
     arrays(&watch);
