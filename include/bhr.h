@@ -805,21 +805,23 @@ typedef struct BhrImage {
 BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 
 /** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
- * grey. Alpha is written as it is. The file appears whole or not at all; one that is replaced keeps its mode and,
- * where the process may set it, its owner, and where path is a symbolic link, its target is written
- * (docs/files.md).
+ * grey. Alpha is written as it is; with BHR_IMAGE_TRANSPARENT, as such a frame is rendered, colours of .png are
+ * divided by it. The file appears whole or not at all; one that is replaced keeps its mode and, where the process
+ * may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
  * Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
  * built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
  * another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
  * quota. */
 BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
-/** Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
- * down, RGBA8_SRGB of 8-bit files, RGBA32F of others (16-bit files are made linear). The pixels are the library's:
- * give them back with bhr_image_release, once. docs/files.md says how files are read, and the bounds that are held.
- * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR; IO for
- * a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels
- * in memory. What a file claims is checked before memory is taken for it. */
+/** Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the
+ * top down, RGBA8_SRGB of 8-bit files of sRGB, RGBA32F of others: linear light in Rec. 709, of what the file says
+ * its colours are. The pixels are the library's: give them back with bhr_image_release, once. docs/files.md says
+ * how files are read, and the bounds that are held.
+ * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
+ * library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
+ * pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken
+ * for it. */
 BHR_NODISCARD BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
 /** Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0.
@@ -1240,8 +1242,9 @@ BHR_NODISCARD BhrStatus bhr_output_init(BhrOutput *output, size_t struct_size);
 BHR_NODISCARD BhrStatus bhr_render_outputs(BhrContext *context, const BhrOutput *outputs, size_t output_size,
                                            uint32_t count, BhrJob **out_job);
 
-/** Writes outputs that bhr_render_outputs has made to an .exr file: one part with a layer for each, and every
- * parameter of the scene as it is now among its attributes. docs/files.md lists channels and attributes. Alpha is
+/** Writes outputs that bhr_render_outputs has made to an .exr file: one part with a layer for each, and among its
+ * attributes every parameter of the scene that the frame of the first output showed (of the scene as it is now for
+ * pixels of no frame of this context, or of one 512 images ago). docs/files.md lists channels and attributes. Alpha is
  * written as it is. A file is replaced as bhr_image_save does it.
  * Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
  * UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.

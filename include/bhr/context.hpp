@@ -369,6 +369,7 @@ class Context {
         Frame frame(width, height, format);
         Image image = frame.image();
         image.flags = flags;
+        frame.set_transparent(has(flags, ImageFlags::transparent));
         const bool right = width > 0 && width <= 1u << 20 && height > 0 && height <= 1u << 20;
         if (image.pixels == nullptr && right && bytes_per_pixel(format) > 0) {
             return Error(StatusCode::out_of_memory, "bhr::Context::render: there is no memory for the frame");

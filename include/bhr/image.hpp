@@ -133,9 +133,16 @@ class Frame {
         return value;
     }
 
+    /// Whether the colours are premultiplied by alpha, as rendered ones of ImageFlags::transparent are: save() then
+    /// writes PNG files with straight ones.
+    bool is_transparent() const noexcept { return transparent_; }
+    void set_transparent(bool transparent) noexcept { transparent_ = transparent; }
+
     /// bhr_image_save, which reads the pixels only.
     Result<void> save(const char *path) const {
-        return Image(span<std::byte>(memory_.get(), size()), width_, height_, format_).save(path);
+        Image image(span<std::byte>(memory_.get(), size()), width_, height_, format_);
+        image.flags = transparent_ ? ImageFlags::transparent : ImageFlags::none;
+        return image.save(path);
     }
     Result<void> save(const std::string &path) const { return save(path.c_str()); }
 
@@ -150,6 +157,7 @@ class Frame {
     std::uint32_t width_;
     std::uint32_t height_;
     Format format_;
+    bool transparent_ = false;
     std::unique_ptr<std::byte[], Free> memory_; // of calloc, which says so where there is none
 };
 

@@ -134,6 +134,18 @@ def test_a_transparent_frame_leaves_the_sky_out(ctx):
     assert {0, 255} <= set(frame.array[..., 3].flat) and not frame.array[..., :3].any()
 
 
+def test_a_transparent_frame_is_saved_with_straight_colours(ctx, tmp_path):
+    frame = ctx.render(64, 36, transparent=True)
+    frame.save(tmp_path / "frame.png")
+    premultiplied, straight = frame.array.astype(int), bhr.load(tmp_path / "frame.png").array.astype(int)
+    assert np.array_equal(straight[..., 3], premultiplied[..., 3])
+    partly = (premultiplied[..., 3] > 50) & (premultiplied[..., 3] < 200) & (premultiplied[..., :3].max(axis=2) < 100)
+    assert partly.any() and (straight > premultiplied)[partly].any() and (straight >= premultiplied)[partly].all()
+    opaque = ctx.render(64, 36, out=frame)
+    opaque.save(tmp_path / "frame.png")
+    assert np.array_equal(bhr.load(tmp_path / "frame.png").array, frame.array)
+
+
 def test_views(ctx):
     ctx.view = bhr.View.REDSHIFT
     g = np.zeros((18, 32), np.float32)

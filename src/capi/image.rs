@@ -7,7 +7,7 @@ use super::pointer::{check_flags, check_reserved, is_null, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use crate::error::{Error, Result};
-use crate::image::{self, ImageMut, Layout, Loaded, PixelFormat};
+use crate::image::{self, Alpha, ImageMut, Layout, Loaded, PixelFormat};
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
 use std::path::PathBuf;
@@ -202,9 +202,9 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 }
 
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
-/// grey. Alpha is written as it is. The file appears whole or not at all; one that is replaced keeps its mode and,
-/// where the process may set it, its owner, and where path is a symbolic link, its target is written
-/// (docs/files.md).
+/// grey. Alpha is written as it is; with BHR_IMAGE_TRANSPARENT, as such a frame is rendered, colours of .png are
+/// divided by it. The file appears whole or not at all; one that is replaced keeps its mode and, where the process
+/// may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
 /// Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
 /// built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
 /// another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
@@ -214,16 +214,19 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
     // SAFETY: NULL or valid, by the header's conventions.
     anywhere("bhr_image_save", || unsafe {
         let given = read(image, "image")?;
-        image::save(&given.pixels.as_image_ref(), &path_of(path)?)
+        let alpha = if given.transparent { Alpha::Premultiplied } else { Alpha::AsInFile };
+        image::save(&given.pixels.as_image_ref(), alpha, &path_of(path)?)
     })
 }
 
-/// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
-/// down, RGBA8_SRGB of 8-bit files, RGBA32F of others (16-bit files are made linear). The pixels are the library's:
-/// give them back with bhr_image_release, once. docs/files.md says how files are read, and the bounds that are held.
-/// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR; IO for
-/// a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels
-/// in memory. What a file claims is checked before memory is taken for it.
+/// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the
+/// top down, RGBA8_SRGB of 8-bit files of sRGB, RGBA32F of others: linear light in Rec. 709, of what the file says
+/// its colours are. The pixels are the library's: give them back with bhr_image_release, once. docs/files.md says
+/// how files are read, and the bounds that are held.
+/// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
+/// library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
+/// pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken
+/// for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

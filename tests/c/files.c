@@ -6,6 +6,7 @@
 #include "check.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,51 @@ static void round_trips(BhrContext *context) {
         CHECK(memcmp(loaded.pixels, rgba, sizeof rgba) == 0, "an image with the flag is saved upside down");
         CHECK(loaded.flags == 0, "a loaded image has flags %u", (unsigned)loaded.flags);
         CHECK_OK(bhr_image_release(&loaded));
+    }
+}
+
+/* Light of an 8-bit code, IEC 61966-2-1. */
+static double light_of(unsigned char code) {
+    const double share = code / 255.0;
+    return share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4);
+}
+
+/* A transparent frame over grey is the same picture by its own premultiplied pixels and by its PNG file, whose colours
+ * are straight; its EXR file has premultiplied ones, as that format's readers expect. */
+static void transparent(BhrContext *context) {
+    static unsigned char pixels[WIDTH * HEIGHT * 4];
+    static float         light[WIDTH * HEIGHT * 4];
+    BhrImage             frame = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels), file;
+    BhrImage             floats = image_of(BHR_FORMAT_RGBA32F, WIDTH, HEIGHT, light, sizeof light);
+    unsigned             covered = 0;
+    double               worst = 0.0, without = 0.0;
+    frame.flags = floats.flags = BHR_IMAGE_TRANSPARENT;
+    CHECK_OK(bhr_render_image(context, &frame));
+    CHECK_OK(bhr_render_image(context, &floats));
+    CHECK_OK(bhr_image_save(&frame, path_of("transparent.png")));
+    CHECK_OK(bhr_image_save(&floats, path_of("transparent.exr")));
+    CHECK_OK(bhr_image_init(&file, sizeof file));
+    if (CHECK_OK(bhr_image_load(path_of("transparent.png"), &file))) {
+        const unsigned char *straight = file.pixels;
+        for (size_t i = 0; i < WIDTH * HEIGHT * 4; i++) {
+            const double alpha = pixels[i | 3] / 255.0, over = light_of(pixels[i]) + (1.0 - alpha) * 0.2;
+            /* Glare beyond alpha is more than a straight colour can be. */
+            if ((i & 3) == 3 || light_of(pixels[i]) > alpha) {
+                continue;
+            }
+            covered += alpha > 0.1 && alpha < 0.9;
+            worst = fmax(worst, fabs(light_of(straight[i]) * alpha + (1.0 - alpha) * 0.2 - over));
+            without = fmax(without, fabs(light_of(pixels[i]) * alpha + (1.0 - alpha) * 0.2 - over));
+        }
+        CHECK(covered > 50 && without > 0.02, "the frame has %u values that are partly transparent, %g", covered,
+              without);
+        /* Half a step of a code is at most 0.0046 of light. */
+        CHECK(worst < 0.0047, "over grey the file differs by %g of white", worst);
+        CHECK_OK(bhr_image_release(&file));
+    }
+    if (CHECK_OK(bhr_image_load(path_of("transparent.exr"), &file))) {
+        CHECK(memcmp(file.pixels, light, sizeof light) == 0, "the EXR file has other pixels");
+        CHECK_OK(bhr_image_release(&file));
     }
 }
 
@@ -382,6 +428,7 @@ int main(int argc, char **argv) {
     other_users(); /* first: children have none of a context's threads */
     BhrContext *context = check_context(backend);
     round_trips(context);
+    transparent(context);
     places();
     unwritable();
     unreadable();

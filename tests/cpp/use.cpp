@@ -214,6 +214,10 @@ static void frames(const std::string &folder) {
     EXPECT(context.save_outputs(bhr::span<const bhr::Output>(outputs, 3), folder + "/outputs.exr"));
     EXPECT(context.save_outputs(outputs, folder + "/eight.exr").status() == bhr::StatusCode::unsupported);
 
+    // Without the sky: PNG files of such frames have straight colours.
+    const bhr::Frame clear = context.render(WIDTH, HEIGHT, bhr::Format::rgba8_srgb, bhr::ImageFlags::transparent).value();
+    EXPECT(clear.is_transparent() && !frame.is_transparent() && clear.save(folder + "/clear.png"));
+
     // Floats, upside down, and a quarter of the frame.
     float light[HEIGHT][WIDTH][4];
     EXPECT(context.render(bhr::Image(light, WIDTH, HEIGHT, bhr::Format::rgba32f)));

@@ -34,6 +34,18 @@ pub fn bombs() -> Vec<Bomb> {
     add("few digits.pnm", few.into(), &["ends before"]);
     let nothing = [seeds::png_header(16384, 16384, 16, 6, false), seeds::chunk(b"IDAT", &[0x78, 1])].concat();
     add("nothing.png", nothing, &["end of file", "of memory", "more data"]);
+    // Light of 16 bytes a pixel becomes of codes that are not sRGB's.
+    let linear = [seeds::png_header(20000, 20000, 8, 0, false), seeds::chunk(b"gAMA", &100_000_u32.to_be_bytes())];
+    let linear = [linear.concat(), seeds::chunk(b"IDAT", &[0x78, 1])].concat();
+    add("linear codes.png", linear, &["at most 4294967296"]);
+    let profile = [seeds::png_header(1, 1, 8, 0, false), seeds::chunk(b"iCCP", &[0; 70_000])].concat();
+    let profile = [profile, seeds::chunk(b"IDAT", &[0x78, 1])].concat();
+    add("a profile that is too long to be read.png", profile, &["its ICC profile"]);
+    let (mut bytes, mut info) = (Vec::new(), png::Info::with_size(1, 1));
+    info.icc_profile = Some(vec![0; 60 << 20].into());
+    let encoder = png::Encoder::with_info(&mut bytes, info).unwrap();
+    encoder.write_header().unwrap().write_image_data(&[0]).unwrap();
+    add("a profile that is small in its file.png", bytes, &["its ICC profile"]);
     // These headers never end.
     let words = ["P6 ".as_bytes(), &vec![b'1'; 1 << 17]].concat();
     add("a word without end.pnm", words, &["parsing"]);

@@ -83,6 +83,33 @@ pub fn png_header(width: u32, height: u32, depth: u8, color: u8, interlaced: boo
     [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &data)].concat()
 }
 
+/// An ICC profile of three lights, with a curve of each kind: a formula, a power, a table.
+fn profile() -> Vec<u8> {
+    let numbers = |numbers: &[f64]| {
+        numbers.iter().flat_map(|number| ((number * 65536.0) as i32).to_be_bytes()).collect::<Vec<_>>()
+    };
+    let xyz = |light: [f64; 3]| [b"XYZ \0\0\0\0".to_vec(), numbers(&light)].concat();
+    let tags: [(&[u8; 4], Vec<u8>); 6] = [
+        (b"rXYZ", xyz([0.51512, 0.2412, -0.00105])),
+        (b"gXYZ", xyz([0.29198, 0.69225, 0.04189])),
+        (b"bXYZ", xyz([0.1571, 0.06657, 0.78407])),
+        (b"rTRC", [b"para\0\0\0\0\0\x03\0\0".to_vec(), numbers(&[2.4, 0.948, 0.052, 0.077, 0.04])].concat()),
+        (b"gTRC", b"curv\0\0\0\0\0\0\0\x01\x02\0\0\0".to_vec()),
+        (b"bTRC", b"curv\0\0\0\0\0\0\0\x03\0\0\x40\0\xff\xff\0\0".to_vec()),
+    ];
+    let mut bytes = vec![0; 128];
+    bytes[16..24].copy_from_slice(b"RGB XYZ ");
+    bytes[36..40].copy_from_slice(b"acsp");
+    bytes.extend((tags.len() as u32).to_be_bytes());
+    let mut at = 132 + 12 * tags.len();
+    for (name, tag) in &tags {
+        bytes.extend([&name[..], &(at as u32).to_be_bytes(), &(tag.len() as u32).to_be_bytes()].concat());
+        at += tag.len();
+    }
+    tags.iter().for_each(|(_, tag)| bytes.extend(tag));
+    bytes
+}
+
 pub fn png() -> Vec<Seed> {
     const SIZE: [usize; 2] = [11, 7];
     /// The passes of Adam7: the first column and row, and the steps.
@@ -135,6 +162,30 @@ pub fn png() -> Vec<Seed> {
             }
         }
     }
+    // Every chunk that says what colours mean, in pictures of 8 and of 16 bits.
+    let places: [u32; 8] = [31_270, 32_900, 70_800, 29_200, 17_000, 79_700, 13_100, 4_600];
+    let places = places.iter().flat_map(|place| place.to_be_bytes()).collect::<Vec<_>>();
+    let colours: [(&str, Vec<u8>); 6] = [
+        ("linear", [chunk(b"gAMA", &100_000_u32.to_be_bytes()), chunk(b"cHRM", &places)].concat()),
+        ("sRGB", chunk(b"sRGB", &[0])),
+        ("PQ", chunk(b"cICP", &[9, 16, 0, 1])),
+        ("HLG of video", chunk(b"cICP", &[12, 18, 0, 0])),
+        ("profile", chunk(b"iCCP", &[b"a profile\0\0", &stored(&profile())[..]].concat())),
+        ("profile and gamma", {
+            let other = stored(&[0; 200]);
+            [chunk(b"iCCP", &[b"other\0\0", &other[..]].concat()), chunk(b"gAMA", &55_556_u32.to_be_bytes())].concat()
+        }),
+    ];
+    let plain = |seed: &&Seed| seed.name.starts_with("colour type 2") && seed.name.ends_with("false, false.png");
+    for seed in seeds.iter().filter(plain).map(|seed| seed.bytes.clone()).collect::<Vec<_>>() {
+        // The header is 33 bytes long.
+        let depth = seed[24];
+        let with = colours.iter().map(|(name, chunks)| Seed {
+            name: format!("{name}, {depth} bits.png"),
+            bytes: [&seed[..33], chunks, &seed[33..]].concat(),
+        });
+        seeds.extend(with);
+    }
     // One that is compressed in earnest, by the encoder that bhr uses.
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 32, 32);
@@ -158,6 +209,16 @@ mod exr {
     use ::exr::meta::header::{Header, LayerAttributes};
     use ::exr::meta::{BlockDescription, attribute::LevelMode};
     use std::io::Cursor;
+
+    /// A part of grey, or of a layer's colours, with the primaries of ACES.
+    fn layer(channels: &[&str]) -> Header {
+        let list = channels.iter().map(|name| ChannelDescription::new(*name, SampleType::F16, false)).collect();
+        let [red, green, blue, white] =
+            [Vec2(0.7347, 0.2653), Vec2(0.0, 1.0), Vec2(0.0001, -0.077), Vec2(0.32168, 0.33767)];
+        let mut header = Header::new(Text::from("a"), Vec2(5, 4), list);
+        header.shared_attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
+        header
+    }
 
     /// A part with channels A, B, G, R of these types, in scan lines or tiles.
     pub fn part(
@@ -242,6 +303,12 @@ mod exr {
             part("c", SIZE, types[2].1, RLE, blocks[1].1),
         ];
         seeds.push(Seed { name: "three parts.exr".into(), bytes: exr_file(parts) });
+        for (name, channels) in [
+            ("parts of grey", &["A", "Y"][..]),
+            ("parts of layers", &["AO.B", "AO.G", "AO.R", "Combined.A", "Combined.B", "Combined.G", "Combined.R"]),
+        ] {
+            seeds.push(Seed { name: format!("{name}.exr"), bytes: exr_file(vec![layer(channels)]) });
+        }
         seeds
     }
 }

@@ -516,6 +516,7 @@ class Context(Tracing):
             kind, index = output_of(output)
             other = Format.R32F if kind in single else Format.RGBA32F
             frame = Frame.empty(width, height, format if kind == OutputKind.LIGHT else other)
+            frame.transparent = transparent and kind == OutputKind.LIGHT
             frames.append(frame)
             images.append(frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0))
             c.struct_size = ffi.sizeof("BhrOutput")
@@ -571,7 +572,9 @@ def _target(
             raise ValueError(f"out has the format {frame.format.name}, not {format.name}")
         if width not in (None, frame.width) or height not in (None, frame.height):
             raise ValueError(f"out has {frame.width} x {frame.height} pixels, not {width} x {height}")
-    return frame, frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)
+    image = frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)
+    frame.transparent = transparent
+    return frame, image
 
 
 @atexit.register

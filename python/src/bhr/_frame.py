@@ -34,6 +34,9 @@ class Frame:
 
     array: npt.NDArray[Any]
     format: Format
+    #: Colours are premultiplied by alpha: a rendered frame's, where `transparent` was asked for. PNG files have straight
+    #: colours, which `save` and `to_png` then make.
+    transparent: bool = False
 
     def __init__(self, array: npt.NDArray[Any], format: FormatLike | None = None) -> None:
         """Wraps an array, without a copy: uint8 (RGBA8_SRGB, or BGRA8_SRGB if `format` says so), float16 or float32 of
@@ -82,7 +85,8 @@ class Frame:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes 8-bit frames to .png or .ppm, float frames to .exr."""
-        check(lib.bhr_image_save(self.image(), _path(path)))
+        flags = lib.BHR_IMAGE_TRANSPARENT if self.transparent else 0
+        check(lib.bhr_image_save(self.image(flags=flags), _path(path)))
 
     def to_png(self) -> bytes:
         """The PNG file of an 8-bit frame."""

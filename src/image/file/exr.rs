@@ -2,25 +2,22 @@
 //! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, one block at a
 //! time is held, and only those are unpacked that reach the picture.
 
+use super::colour::{Matrix, Primaries};
+use super::exr_channels::{Chosen, choose};
 use super::loaded::{Loaded, Pixels};
 use super::support::{io_error, pixel_count, probe, zeros};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::memory::MAX_SIDE;
-use crate::image::memory::{ImageRef, PixelFormat};
+use crate::image::memory::{MAX_SIDE, PixelFormat};
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::block::reader::ChunksReader;
-use ::exr::block::writer::ChunksWriter;
 use ::exr::block::{self, BlockIndex, UncompressedBlock};
 use ::exr::compression::Compression;
-use ::exr::math::{RoundingMode, Vec2};
-use ::exr::meta::BlockDescription;
-use ::exr::meta::attribute::{
-    ChannelDescription, IntegerBounds, LevelMode, LineOrder, SampleType, Text, TileDescription,
-};
-use ::exr::meta::header::{Header, ImageAttributes, LayerAttributes};
+use ::exr::math::Vec2;
+use ::exr::meta::attribute::{Chromaticities, SampleType};
+use ::exr::meta::header::Header;
 use half::f16;
 use std::cell::Cell;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
 /// The longest headers of all parts together, bytes.
@@ -53,7 +50,9 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     let headed = HeaderLimiter { file, in_headers: &in_headers, taken: 0, probed: 0 };
     let reader = block::read(headed, false).map_err(header_error)?;
     in_headers.set(false);
-    let part = check(reader.headers())?;
+    check(reader.headers())?;
+    let chosen = choose(reader.headers())?;
+    let part = chosen.part;
     let header = &reader.headers()[part];
     if let Compression::DWAA(_) | Compression::DWAB(_) | Compression::HTJ2K32 | Compression::HTJ2K256 =
         header.compression
@@ -63,7 +62,8 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     }
     // Blocks of other parts are read, and not unpacked.
     let largest = reader.headers().iter().map(block_bytes).max().unwrap_or(0);
-    let mut picture = Picture::new(part, header)?;
+    let matrix = to_rec709(header);
+    let mut picture = Picture::new(&chosen, header)?;
     probe(BLOCKS_AT_A_TIME * block_bytes(header) + largest)?;
 
     let mut chunks = reader.all_chunks(false).map_err(io_error)?;
@@ -75,6 +75,11 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
         if chunk.layer_index == part && picture.needs(&chunks.meta_data().headers[part], &chunk.compressed_block)? {
             let block = UncompressedBlock::decompress_chunk(chunk, chunks.meta_data(), false).map_err(io_error)?;
             picture.put(&block)?;
+        }
+    }
+    if let Some(matrix) = matrix {
+        for [r, g, b, _] in picture.pixels.as_chunks_mut::<4>().0 {
+            [*r, *g, *b] = matrix.of([*r, *g, *b]);
         }
     }
     Ok(Loaded {
@@ -90,8 +95,21 @@ fn header_error(error: ::exr::error::Error) -> Error {
         ::exr::error::Error::Io(io) if io.kind() == io::ErrorKind::OutOfMemory => {
             Error::new(ErrorKind::OutOfMemory, "there is no memory for its headers")
         }
+        // The decoder refuses them while it reads headers, by several messages.
+        error if error.to_string().contains("sampling") => io_error(
+            "it has channels with one value for several pixels, as the chroma RY and BY beside luminance; save it with \
+             R, G and B",
+        ),
         error => io_error(error),
     }
+}
+
+/// From the file's primaries, where it names others than those of Rec. 709. Numbers that are no primaries' are passed
+/// over: programs write zeros.
+fn to_rec709(header: &Header) -> Option<Matrix> {
+    let Chromaticities { red, green, blue, white } = header.shared_attributes.chromaticities?;
+    let primaries = Primaries([red, green, blue, white].map(|Vec2(x, y)| [f64::from(x), f64::from(y)]));
+    primaries.to_rec709().ok().flatten().map(Matrix::new)
 }
 
 /// A file whose headers come first. Reading them fails past `MAX_HEADER_BYTES`, and where there is no memory for
@@ -136,9 +154,8 @@ fn block_bytes(header: &Header) -> u64 {
     pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
 }
 
-/// The part that is read: the first with channels R, G and B. Errors: IO when there is none, or any part exceeds a
-/// limit.
-fn check(parts: &[Header]) -> Result<usize> {
+/// Errors: IO where a part exceeds a limit.
+fn check(parts: &[Header]) -> Result<()> {
     for (i, part) in parts.iter().enumerate() {
         let Vec2(width, height) = part.layer_size;
         if width == 0 || height == 0 || width > MAX_SIDE as usize || height > MAX_SIDE as usize {
@@ -156,12 +173,7 @@ fn check(parts: &[Header]) -> Result<usize> {
             )));
         }
     }
-    let has_light = |part: &Header| ["R", "G", "B"].iter().all(|name| channel(part, name).is_some());
-    parts.iter().position(has_light).ok_or_else(|| io_error("none of its parts has channels R, G and B"))
-}
-
-fn channel(part: &Header, name: &str) -> Option<usize> {
-    part.channels.list.iter().position(|channel| channel.name.as_slice() == name.as_bytes())
+    Ok(())
 }
 
 /// The picture as its blocks come in.
@@ -172,10 +184,10 @@ struct Picture {
     /// The place of the data window's first pixel in the display window.
     offset: [i64; 2],
     pixels: Vec<f32>,
-    /// The part has no channel A: alpha is 1 where the data window reaches.
+    /// The picture has no channel A: alpha is 1 where the data window reaches.
     opaque: bool,
-    /// For each channel of the part: its type, and its index in RGBA if it has one.
-    channels: Vec<(SampleType, Option<usize>)>,
+    /// For each channel of the part: its type, and the places in RGBA that it goes to.
+    channels: Vec<(SampleType, [bool; 4])>,
     /// Pixels in a block.
     block: Vec2<usize>,
     /// Columns and rows of blocks that reach the picture.
@@ -200,7 +212,7 @@ fn reaching(shown: Range<i64>, data: usize, block: usize) -> (Range<usize>, usiz
 
 impl Picture {
     /// Errors: IO for a size past the limits; OUT_OF_MEMORY.
-    fn new(part: usize, header: &Header) -> Result<Self> {
+    fn new(chosen: &Chosen, header: &Header) -> Result<Self> {
         let display = header.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
@@ -210,7 +222,8 @@ impl Picture {
             i64::from(position.0) - i64::from(display.position.0),
             i64::from(position.1) - i64::from(display.position.1),
         ];
-        let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
+        let [red, green, blue] = chosen.rgb.map(Some);
+        let of_rgba = [red, green, blue, chosen.alpha];
         let block = header.max_block_pixel_size();
         let (columns, reached_width) = reaching(-offset[0]..width as i64 - offset[0], header.layer_size.0, block.0);
         let (rows, reached_height) = reaching(-offset[1]..height as i64 - offset[1], header.layer_size.1, block.1);
@@ -219,8 +232,9 @@ impl Picture {
         let most = (MAX_UNPACKED_TIMES * picture).max(MAX_SMALL_BLOCK_BYTES);
         if at_a_time > most {
             return Err(io_error(format!(
-                "a block of its part {part} has {at_a_time} bytes; at most {most} are unpacked at a time for {width} x \
-                 {height} pixels"
+                "a block of its part {} has {at_a_time} bytes; at most {most} are unpacked at a time for {width} x \
+                 {height} pixels",
+                chosen.part
             )));
         }
         // At most 2^28 pixels of 4096 channels.
@@ -228,19 +242,20 @@ impl Picture {
         let most = (MAX_UNPACKED_TIMES * picture).max(MAX_UNPACKED_BYTES);
         if unpacked > most {
             return Err(io_error(format!(
-                "the channels of its part {part} have {unpacked} bytes; at most {most} are unpacked for {width} x \
-                 {height} pixels"
+                "the channels of its part {} have {unpacked} bytes; at most {most} are unpacked for {width} x \
+                 {height} pixels",
+                chosen.part
             )));
         }
         let blocks = columns.len() * rows.len();
         let channels = header.channels.list.iter().enumerate();
         Ok(Self {
-            part,
+            part: chosen.part,
             size: [width, height],
             offset,
             pixels: zeros(4 * count)?,
-            opaque: of_rgba[3].is_none(),
-            channels: channels.map(|(i, c)| (c.sample_type, of_rgba.iter().position(|of| *of == Some(i)))).collect(),
+            opaque: chosen.alpha.is_none(),
+            channels: channels.map(|(i, c)| (c.sample_type, of_rgba.map(|of| of == Some(i)))).collect(),
             block,
             columns,
             rows,
@@ -292,8 +307,8 @@ impl Picture {
                     return Err(io_error("a block is shorter than its pixels"));
                 };
                 rest = after;
-                if let Some(c) = of_rgba {
-                    put_line(*kind, &line[from * bytes..to * bytes], &mut self.pixels[shown.clone()], *c);
+                for (c, _) in of_rgba.iter().enumerate().filter(|(_, is_there)| **is_there) {
+                    put_line(*kind, &line[from * bytes..to * bytes], &mut self.pixels[shown.clone()], c);
                 }
             }
         }
@@ -313,56 +328,4 @@ fn put_line(kind: SampleType, line: &[u8], out: &mut [f32], c: usize) {
             out.zip(line.as_chunks().0).for_each(|(out, value)| *out = u32::from_ne_bytes(*value) as f32);
         }
     }
-}
-
-/// Pixels a side of the tiles that are written.
-const TILE: usize = 64;
-
-/// Writes a float image: 32-bit channels B, G, R, and A where it has alpha, run-length encoded tiles. Errors: IO.
-pub(super) fn write(image: &ImageRef<'_>, file: impl Write + Seek) -> Result<()> {
-    // Files list channels sorted by name. The numbers are indices in RGBA; a single value becomes grey.
-    let channels: &[(&str, usize)] = match image.format() {
-        PixelFormat::R32F => &[("B", 0), ("G", 0), ("R", 0)],
-        _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
-    };
-    let size = Vec2(image.width() as usize, image.height() as usize);
-    let list = channels.iter().map(|(name, _)| ChannelDescription::new(*name, SampleType::F32, false));
-    let tiles = TileDescription {
-        tile_size: Vec2(TILE, TILE),
-        level_mode: LevelMode::Singular,
-        rounding_mode: RoundingMode::Down,
-    };
-    let header = Header::new(Text::from("image"), size, list.collect())
-        .with_encoding(Compression::RLE, BlockDescription::Tiles(tiles), LineOrder::Unspecified)
-        .with_attributes(LayerAttributes { software_name: Some(Text::from("bhr")), ..Default::default() })
-        .with_shared_attributes(ImageAttributes::new(IntegerBounds::from_dimensions(size)));
-    let written = block::write(file, std::iter::once(header).collect(), true, |meta, chunks| {
-        let mut compressor = chunks.sequential_blocks_compressor(&meta);
-        for (index, block) in meta.collect_ordered_block_data(|index| tile(image, channels, index)) {
-            compressor.compress_block(index, block)?;
-        }
-        Ok(())
-    });
-    written.map_err(io_error)
-}
-
-/// A tile's values: row by row, in each row channel by channel.
-fn tile(image: &ImageRef<'_>, channels: &[(&str, usize)], at: BlockIndex) -> Vec<u8> {
-    let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = at;
-    let mut values = Vec::with_capacity(4 * width * height * channels.len());
-    let pixel_bytes = image.format().bytes_per_pixel();
-    let channel_bytes = image.format().channel_bytes();
-    for y in top..top + height {
-        let row = &image.row(y as u32)[left * pixel_bytes..(left + width) * pixel_bytes];
-        for (_, c) in channels {
-            for pixel in row.chunks_exact(pixel_bytes) {
-                let value = &pixel[c * channel_bytes..(c + 1) * channel_bytes];
-                match value.as_array::<2>() {
-                    Some(half) => values.extend(f16::from_ne_bytes(*half).to_f32().to_ne_bytes()),
-                    None => values.extend(value),
-                }
-            }
-        }
-    }
-    values
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A layer of a file, and the attributes that go with layers. Knows no kind of file.
+//! The things that are written: a layer of a file, the attributes that go with layers, and the meaning of alpha. Knows
+//! no kind of file.
 
 use crate::image::memory::ImageRef;
 
@@ -15,4 +16,13 @@ pub struct Layer<'a> {
 pub enum Attribute {
     Number(f64),
     Text(String),
+}
+
+/// How an image's colours go with its alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    /// The kind of file that the image goes to says how.
+    AsInFile,
+    /// Transparent frames are so: black where alpha is 0, but for glare.
+    Premultiplied,
 }

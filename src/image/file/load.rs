@@ -10,12 +10,13 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Reads a PNG, EXR or PNM file: 8-bit files as `Rgba8Srgb`, others as linear `Rgba32F` (16-bit files carry the sRGB
-/// curve, which is undone). EXR files: the largest level of the first part that has channels R, G and B, cut to the
-/// display window; 0 where the data window does not reach. Errors: IO for a file that is not there, not readable,
-/// broken, of another kind, or past a limit, which is named: 2^20 pixels a side, 4 GiB as it is handed out, and for
-/// EXR 8 MiB of headers, 4096 channels, 64 to 256 MiB a block, and 1 GiB to unpack, or four times the picture's bytes;
-/// UNSUPPORTED for EXR without the cargo feature, and for its compressions DWA and HTJ2K; OUT_OF_MEMORY.
+/// Reads a PNG, EXR or PNM file: 8-bit files of sRGB as `Rgba8Srgb`, others as linear `Rgba32F` in Rec. 709, by the
+/// curve and the primaries that a file has, or those of sRGB (PNG, PNM) and Rec. 709 (EXR). EXR files: the largest
+/// level of the channels that `exr_channels` chooses, cut to the display window; 0 where the data window does not
+/// reach. Errors: IO for a file that is not there, not readable, broken, of another kind, or past a limit, which is
+/// named: 2^20 pixels a side, 4 GiB as it is handed out, and for EXR 8 MiB of headers, 4096 channels, 64 to 256 MiB a
+/// block, and 1 GiB to unpack, or four times the picture's bytes; UNSUPPORTED for EXR without the cargo feature, and
+/// for its compressions DWA and HTJ2K, and for colours of a PNG that are not known; OUT_OF_MEMORY.
 pub fn load(path: &Path) -> Result<Loaded> {
     let read = || on_own_thread(|| decode(open(path)?));
     read().map_err(|error| about("read", path, &error))

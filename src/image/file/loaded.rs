@@ -46,6 +46,11 @@ pub fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
+/// The sRGB curve, IEC 61966-2-1, by its formula: `film` has a quicker one, to a part of a step.
+pub(super) fn linear_to_srgb(light: f32) -> f32 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// The light of every 16-bit code. Errors: OUT_OF_MEMORY.
 pub(super) fn linear_codes() -> Result<Vec<f32>> {
     let mut codes = reserve(1 << 16)?;

@@ -6,21 +6,30 @@
 
 mod layer;
 mod support;
+mod loaded;
+mod colour;
+mod icc;
 #[cfg(feature = "exr")]
 mod layers;
-mod loaded;
 mod replace;
+#[cfg(feature = "exr")]
+mod exr_channels;
 #[cfg(feature = "exr")]
 mod exr;
 mod pam;
+mod png_colours;
 mod png;
 mod pnm;
 mod load;
 mod save;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod colour_tests;
+#[cfg(all(test, feature = "exr"))]
+mod layer_tests;
 
-pub use layer::{Attribute, Layer};
+pub use layer::{Alpha, Attribute, Layer};
 pub use load::{decode_png, load};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
 pub use save::{save, save_layers};

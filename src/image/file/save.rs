@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Writing image files: the kind of file that goes with a path and a format.
 
-use super::layer::{Attribute, Layer};
+use super::layer::{Alpha, Attribute, Layer};
 use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};
 use crate::error::{Error, Result};
@@ -37,16 +37,17 @@ fn kinds_of(format: PixelFormat) -> &'static [(&'static str, FileKind)] {
     }
 }
 
-/// Writes `image`: 8-bit formats to `.png` or `.ppm` (which drops alpha), float formats to `.exr` (32-bit; `R32F` as
-/// grey), alpha as it is. The file appears whole, and on the disk, or not at all. A file that is replaced keeps its
-/// mode, and its owner where the process may set it; where `path` is a symbolic link, its target is written. Errors:
-/// UNSUPPORTED for another extension, and for EXR without the cargo feature; IO; OUT_OF_MEMORY.
-pub fn save(image: &ImageRef<'_>, path: &Path) -> Result<()> {
+/// Writes `image`: 8-bit formats to `.png` (premultiplied colours are divided by alpha) or `.ppm` (which has no alpha;
+/// premultiplied colours are those over black), float formats to `.exr`, where premultiplied is what all colours are
+/// (`R32F` as grey). Light is Rec. 709's. The file appears whole, and on the disk, or not at all. A file that is
+/// replaced keeps its mode, and its owner where the process may set it; where `path` is a symbolic link, its target is
+/// written. Errors: UNSUPPORTED for another extension, and for EXR without the cargo feature; IO; OUT_OF_MEMORY.
+pub fn save(image: &ImageRef<'_>, alpha: Alpha, path: &Path) -> Result<()> {
     let kind = kind_for(path, image.format())?;
     let write = || {
         replace::with(path, |file| {
             let mut file = BufWriter::new(file);
-            encode(image, kind, &mut file)?;
+            encode(image, alpha, kind, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
         })
     };
@@ -87,12 +88,12 @@ fn encode_layers(_: &[Layer<'_>], _: &[(String, Attribute)], _: &mut BufWriter<s
     Err(Error::unsupported(super::support::WITHOUT_EXR))
 }
 
-fn encode(image: &ImageRef<'_>, kind: FileKind, file: &mut BufWriter<std::fs::File>) -> Result<()> {
+fn encode(image: &ImageRef<'_>, alpha: Alpha, kind: FileKind, file: &mut BufWriter<std::fs::File>) -> Result<()> {
     match kind {
-        FileKind::Png => png::write(image, file),
+        FileKind::Png => png::write(image, alpha, file),
         FileKind::Ppm => pnm::write(image, file),
         #[cfg(feature = "exr")]
-        FileKind::Exr => super::exr::write(image, file),
+        FileKind::Exr => super::layers::write_image(image, file),
         #[cfg(not(feature = "exr"))]
         FileKind::Exr => Err(Error::unsupported(super::support::WITHOUT_EXR)),
     }

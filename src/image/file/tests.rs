@@ -7,18 +7,21 @@ use crate::image::{ImageMut, ImageRef, Layout, PixelFormat};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A folder of this test's own, removed at its end.
-struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("bhr-file-{name}-{}", std::process::id()));
+    pub(super) fn new(name: &str) -> Self {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let next = NEXT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("bhr-file-{name}-{}-{next}", std::process::id()));
         fs::create_dir_all(&path).unwrap();
         Self(path)
     }
 
-    fn file(&self, name: &str) -> PathBuf {
+    pub(super) fn file(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
@@ -45,7 +48,7 @@ fn block<T: bytemuck::Pod>(layout: Layout, rows: [&[T]; 2]) -> Vec<u32> {
 }
 
 fn save_block(layout: Layout, words: &[u32], path: &Path) -> Result<()> {
-    save(&ImageRef::new(layout, bytemuck::cast_slice(words)).unwrap(), path)
+    save(&ImageRef::new(layout, bytemuck::cast_slice(words)).unwrap(), Alpha::AsInFile, path)
 }
 
 fn layout(format: PixelFormat, row_stride: i64) -> Layout {
