@@ -40,7 +40,25 @@ fn aberrate(look: vec3<f32>) -> LookDirection {
     // In f32 an observer that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
     let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
     let n = normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio);
-    return LookDirection(look, n, ratio);
+    var seen = LookDirection(look, n, ratio);
+    if gamma > SWIFT_GAMMA {
+        // With the angle w between look and the motion, and f = 1 - cos w: 1 - beta cos w = (1 - beta) + beta f, and
+        // along the motion n holds (cos w - beta) / (1 - beta cos w), across it what look holds, times ratio.
+        let motion = normalize(beta);
+        let off = look - motion;
+        let f = 0.5 * dot(off, off);
+        let lag = one_less_beta(gamma);
+        let q = lag + (1.0 - lag) * f;
+        let swift = 1.0 / (gamma * q);
+        seen = LookDirection(look, normalize(motion * ((lag - f) / q) + (off + motion * f) * swift), swift);
+    }
+    return seen;
+}
+
+// 1 - beta = (1 / gamma^2) / (1 + beta).
+fn one_less_beta(gamma: f32) -> f32 {
+    let inverse = 1.0 / (gamma * gamma);
+    return inverse / (1.0 + sqrt(1.0 - inverse));
 }
 
 // Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that
@@ -53,7 +71,18 @@ fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     let gamma = frame.gamma;
     let turn = change - seen.look * dot(seen.look, change);
     let along = dot(beta, turn);
-    return seen.frequency_ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
+    let ratio = seen.frequency_ratio;
+    var turned = ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
+    if gamma > SWIFT_GAMMA {
+        // The derivative of what aberrate has for these, with d(cos w) = motion . turn = -off . turn.
+        let motion = normalize(beta);
+        let off = seen.look - motion;
+        let cosine = -dot(off, turn);
+        let across = off + motion * (0.5 * dot(off, off));
+        let bend = (1.0 - one_less_beta(gamma)) * gamma * ratio * cosine;
+        turned = ratio * (turn - motion * cosine + across * bend + motion * (ratio * cosine));
+    }
+    return turned;
 }
 
 fn begin_ray(look: vec3<f32>) -> RayBegin {

@@ -13,6 +13,7 @@ use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
+use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic};
 use crate::scene::occluder::NO_THING;
@@ -101,6 +102,7 @@ fn all() -> Vec<(&'static str, String)> {
         KERR_ROWS_BELOW: u32 = kerr::ROWS_BELOW;
         KERR_ROWS_ABOVE: u32 = kerr::ROWS_ABOVE;
         KERR_CURVE: u32 = critical::CRITICAL_NODES;
+        SWIFT_GAMMA: f32 = Observer::SWIFT;
         KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
         KERR_NARROW_REACH: f32 = kerr::NARROW_REACH;
         KERR_DIRECT: u32 = kerr::DIRECT;

@@ -157,7 +157,7 @@ pub fn group() -> Group {
         .with(&any),
         twin(
             observer,
-            "aberrate",
+            "aberrate one_less_beta",
             "enter_scene(); let seen = aberrate(in3(1u)); out3(seen.n); out1(seen.frequency_ratio);",
             moving_look,
             |i, o| {
