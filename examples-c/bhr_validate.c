@@ -67,7 +67,8 @@ static void set_spin(double spin) {
 }
 
 static BhrHoleInfo hole_info(void) {
-    BhrHoleInfo info = {.struct_size = sizeof info};
+    BhrHoleInfo info;
+    BHR_INIT(info);
     if (!worked(bhr_hole_info(context, &info))) {
         info.isco_prograde = info.isco_retrograde = info.photon_orbit_prograde = info.photon_orbit_retrograde = NAN;
         info.shadow_angular_radius = info.camera_time_rate = NAN;
@@ -78,7 +79,7 @@ static BhrHoleInfo hole_info(void) {
 /* A camera at radius r and angle theta from the axis, azimuth 0. */
 static void set_camera(double r, double theta, BhrMotion motion) {
     BhrCamera camera;
-    bhr_camera_init(&camera, sizeof camera);
+    BHR_INIT(camera);
     camera.position[0] = r * sin(theta), camera.position[1] = 0.0, camera.position[2] = r * cos(theta);
     camera.forward[0] = -sin(theta), camera.forward[1] = 0.0, camera.forward[2] = -cos(theta);
     camera.up[0] = -cos(theta), camera.up[1] = 0.0, camera.up[2] = sin(theta);
@@ -329,7 +330,7 @@ static void circular_orbits(void) {
             const double r = first + 0.5 * (double)step, w = 1.0 / (r * sqrt(r));
             BhrCamera    camera;
             set_camera(r, 0.5 * PI, BHR_MOTION_ORBIT);
-            bhr_camera_init(&camera, sizeof camera);
+            BHR_INIT(camera);
             double passed = NAN;
             if (!worked(bhr_get_camera(context, &camera)) ||
                 !worked(bhr_camera_advance(context, &camera, 1.0, &passed))) {
@@ -398,7 +399,7 @@ int main(int argc, char **argv) {
         return report_failure("no context", status);
     }
     BhrQuality quality;
-    bhr_quality_init(&quality, sizeof quality);
+    BHR_INIT(quality);
     quality.method = BHR_METHOD_ADAPTIVE, quality.tolerance = 1e-14, quality.max_steps = 100000;
     worked(bhr_set_quality(context, &quality));
     if (form == JSON) {

@@ -350,7 +350,7 @@ static const Choice MATTERS[] = {{"thin", BHR_PRESET_MATTER_THIN}, {"deep", BHR_
 
 static BhrImage image_of(const World *world, BhrFormat format, float *pixels) {
     BhrImage image;
-    bhr_image_init(&image, sizeof image);
+    BHR_INIT(image);
     image.format = format;
     image.width = world->width;
     image.height = world->height;
@@ -398,7 +398,7 @@ static BhrStatus trace(World *world) {
     for (size_t i = 0; i < COUNT_OF(kinds); i++) {
         images[i] = image_of(world, kinds[i] == BHR_OUTPUT_DEPTH ? BHR_FORMAT_R32F : BHR_FORMAT_RGBA32F, pixels[i]);
         images[i].flags = BHR_IMAGE_TRANSPARENT;
-        bhr_output_init(&outputs[i], sizeof outputs[i]);
+        BHR_INIT(outputs[i]);
         outputs[i].kind = kinds[i];
         outputs[i].image = &images[i];
     }
@@ -466,12 +466,12 @@ static BhrStatus save(const World *world, const char *path) {
 static BhrStatus set_matter(BhrContext *context, int32_t matter) {
     if (matter == BHR_PRESET_MATTER_DEEP) {
         BhrPresetOptions options;
-        bhr_preset_options_init(&options, sizeof options);
+        BHR_INIT(options);
         options.matter = matter;
         return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
     }
     BhrDisk disk;
-    bhr_disk_init(&disk, sizeof disk);
+    BHR_INIT(disk);
     disk.opacity = 0.8;
     return bhr_set_disk(context, &disk);
 }

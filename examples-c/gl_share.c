@@ -75,7 +75,8 @@ BhrContext *make_context(void) {
 Shared make_shared(BhrContext *context, BhrFormat format, GLenum inside, uint32_t width, uint32_t height,
                    uint32_t flags) {
     BhrTargetOptions shape;
-    BhrTargetInfo    info = {.struct_size = sizeof info};
+    BhrTargetInfo    info;
+    BHR_INIT(info);
     BhrHandle        handle;
     Shared           made;
     GLuint           memory;
@@ -109,7 +110,8 @@ static GLuint import_semaphore(BhrSemaphore *semaphore) {
 }
 
 Turns make_turns(BhrContext *context) {
-    BhrInteropInfo can = {.struct_size = sizeof can};
+    BhrInteropInfo can;
+    BHR_INIT(can);
     Turns          turns = {NULL, NULL, 0, 0};
     bhr(bhr_interop_info(context, &can), "what can be shared");
     if ((can.semaphores[BHR_SEMAPHORE_BINARY] & BHR_HANDLE_OPAQUE_FD) && has_gl("GL_EXT_semaphore_fd")) {

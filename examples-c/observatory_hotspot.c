@@ -47,7 +47,8 @@ static int begin_curve(Curve *curve) {
         fprintf(stderr, "observatory: the light of the spot must be a power law of the frequency: leave thermal out\n");
         return EXIT_USAGE;
     }
-    BhrHoleInfo hole = {.struct_size = sizeof hole};
+    BhrHoleInfo hole;
+    BHR_INIT(hole);
     BhrStatus   status = bhr_set_spin(curve->context, s->spin);
     if (status >= 0) {
         status = bhr_set_hot_spots(curve->context, &curve->spot, sizeof curve->spot, 1);

@@ -78,8 +78,10 @@ static int render_and_save(BhrContext *context, const Settings *s, const BhrImag
     if (status < 0) {
         return report_failure("save the frame", status);
     }
-    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
-    BhrFrameStats  stats = {.struct_size = sizeof stats};
+    BhrAdapterInfo adapter;
+    BHR_INIT(adapter);
+    BhrFrameStats  stats;
+    BHR_INIT(stats);
     status = bhr_context_adapter(context, &adapter);
     if (status >= 0) {
         status = bhr_frame_stats(context, &stats);
@@ -107,7 +109,8 @@ static int make_frame(BhrContext *context, const Settings *s) {
 
 /* Whether the library took a software driver for what the CPU tracer is done with sooner. */
 static int suits_cpu_better(const Settings *s, const BhrContext *context) {
-    BhrAdapterInfo info = {.struct_size = sizeof info};
+    BhrAdapterInfo info;
+    BHR_INIT(info);
     const double   rays = (double)s->size[0] * (double)s->size[1] * (double)s->input.scene.quality.samples_per_pixel;
     return library_chooses(s) && bhr_context_adapter(context, &info) >= 0 && (info.flags & BHR_ADAPTER_SOFTWARE) &&
            info.backend != BHR_BACKEND_CPU && rays < RAYS_WORTH_COMPILING * cores();
@@ -138,7 +141,8 @@ static int list_adapters(void) {
     uint32_t  count;
     BhrStatus status = bhr_adapter_count(&count);
     for (uint32_t i = 0; status >= 0 && i < count; i++) {
-        BhrAdapterInfo info = {.struct_size = sizeof info};
+        BhrAdapterInfo info;
+        BHR_INIT(info);
         status = bhr_adapter_info(i, &info);
         if (status >= 0) {
             printf("%2u  ", (unsigned)i);

@@ -71,7 +71,7 @@ static int render(BhrContext *context, const Settings *s, BhrImage *both, unsign
 
 static int make_picture(const Settings *s) {
     BhrImage both;
-    bhr_image_init(&both, sizeof both);
+    BHR_INIT(both);
     both.width = s->size[0] * (s->ods ? 1 : 2);
     both.height = s->size[1] * (s->ods ? 2 : 1);
     both.row_stride = (int64_t)both.width * 4;

@@ -214,7 +214,8 @@ static void print_plot(const Settings *s, const BhrRay *ray, const double (*poin
 static int show_photon(BhrContext *context, const Settings *s, double psi, double position_angle) {
     const BhrRay  ray = make_ray(s, psi, position_angle);
     BhrHit        hit;
-    BhrHoleInfo   hole = {.struct_size = sizeof hole};
+    BhrHoleInfo   hole;
+    BHR_INIT(hole);
     static double points[PATH_CAPACITY][4];
     uint32_t      count = 0;
     BhrStatus     status = bhr_trace_rays(context, &ray, sizeof ray, 1, &hit, sizeof hit);

@@ -129,7 +129,8 @@ static void move(Viewer *v) {
 
 /* The cost of a presented frame: the governor and the title want to know. */
 static void account(Viewer *v, int moving) {
-    BhrFrameStats stats = {.struct_size = sizeof stats};
+    BhrFrameStats stats;
+    BHR_INIT(stats);
     double        now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
     BhrStatus     status = bhr_frame_stats(v->context, &stats);
     governor_hear(&v->governor, moving, seconds, status >= 0 ? (double)stats.gpu_ns * 1e-9 : 0.0);
@@ -213,8 +214,10 @@ static void handle_events(Viewer *v) {
 
 static void update_title(Viewer *v) {
     double        elapsed = v->now - v->titled_at;
-    BhrHoleInfo   info = {.struct_size = sizeof info};
-    BhrFrameStats stats = {.struct_size = sizeof stats};
+    BhrHoleInfo   info;
+    BHR_INIT(info);
+    BhrFrameStats stats;
+    BHR_INIT(stats);
     if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
         return;
     }
@@ -320,7 +323,8 @@ static double display_rate(void) {
 }
 
 static void print_what_renders(const BhrContext *context, int32_t backend) {
-    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    BhrAdapterInfo adapter;
+    BHR_INIT(adapter);
     if (bhr_context_adapter(context, &adapter) < 0) {
         return;
     }
@@ -356,7 +360,8 @@ static int open_context(Viewer *v, const Settings *s) {
 
 /* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
 static int is_software(const BhrContext *context) {
-    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    BhrAdapterInfo adapter;
+    BHR_INIT(adapter);
     return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
 }
 

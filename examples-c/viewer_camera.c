@@ -332,7 +332,8 @@ static void upright(Pilot *pilot, Scene *scene, double seconds) {
 }
 
 BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, double seconds, double proper_time) {
-    BhrHoleInfo info = {.struct_size = sizeof info};
+    BhrHoleInfo info;
+    BHR_INIT(info);
     BhrStatus   status = bhr_hole_info(context, &info);
     if (status < 0) {
         return status;

@@ -118,7 +118,8 @@ static void look_at_hole(Viewer *v) {
 }
 
 static void cycle_motion(Viewer *v, double unused) {
-    BhrHoleInfo info = {.struct_size = sizeof info};
+    BhrHoleInfo info;
+    BHR_INIT(info);
     (void)unused;
     if (bhr_hole_info(v->context, &info) >= 0 && info.camera_radius <= info.horizon_radius) {
         SAY(v, "inside the horizon every observer falls");
@@ -138,7 +139,8 @@ static void toggle_flight(Viewer *v, double unused) {
     v->pilot.flying = !v->pilot.flying;
     v->pilot.centring = !v->pilot.flying;
     SAY(v, v->pilot.flying ? "free flight: W A S D Q E, Shift for speed, right drag to look" : "about the hole again");
-    BhrHoleInfo info = {.struct_size = sizeof info};
+    BhrHoleInfo info;
+    BHR_INIT(info);
     if (v->pilot.flying && bhr_hole_info(v->context, &info) >= 0 && info.camera_radius > info.horizon_radius) {
         v->pilot.motion = BHR_MOTION_STATIC;
     }

@@ -76,7 +76,8 @@ static BhrVulkanDevice make_device(void) {
     static const char    *of_instance[MOST_NAMES], *of_the_device[MOST_NAMES];
     const char           *for_window = VK_KHR_SWAPCHAIN_EXTENSION_NAME, **for_surfaces = NULL;
     uint32_t              surfaces = 0;
-    BhrVulkanRequirements needs = {.struct_size = sizeof needs};
+    BhrVulkanRequirements needs;
+    BHR_INIT(needs);
     bhr(bhr_vulkan_requirements(NULL, NULL, NULL, &needs), "what bhr needs");
     if (window && !(for_surfaces = glfwGetRequiredInstanceExtensions(&surfaces)))
         stop("a window", "Vulkan does not draw in windows here");
@@ -95,7 +96,8 @@ static BhrVulkanDevice make_device(void) {
         stop("a GPU", "Vulkan has none");
 
     BhrGetInstanceProcAddr  find = (BhrGetInstanceProcAddr)vkGetInstanceProcAddr;
-    BhrVulkanRequirements   of_device = {.struct_size = sizeof of_device};
+    BhrVulkanRequirements   of_device;
+    BHR_INIT(of_device);
     float                   priority = 1;
     VkDeviceQueueCreateInfo queues = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, .queueCount = 1, .pQueuePriorities = &priority};

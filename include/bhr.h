@@ -26,10 +26,10 @@
  *       if (bhr_context_create(BHR_ABI_VERSION, NULL, &context) < 0)
  *           return 1; // bhr_error_message() says why, here and below
  *       bhr_set_spin(context, 0.9);
- *       bhr_camera_init(&camera, sizeof camera);
+ *       BHR_INIT(camera); // size and defaults
  *       bhr_camera_orbit(&camera, 20.0, 0.0, 0.1); // distance, azimuth, elevation
  *       bhr_set_camera(context, &camera);
- *       bhr_image_init(&image, sizeof image); // RGBA8_SRGB, rows without gaps
+ *       BHR_INIT(image); // RGBA8_SRGB, rows without gaps
  *       image.width = 640;
  *       image.height = 360;
  *       image.pixels = pixels;
@@ -88,7 +88,8 @@
  *   output, and as input means what the library did without it. A struct larger than this library's is accepted as
  *   input when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init
  *   functions clear struct_size bytes and fill in the defaults: of BhrDisk and BhrFilm those of the release whose
- *   struct has that size. Structs and arrays need no alignment; pixels do (BhrImage).
+ *   struct has that size. BHR_INIT(camera), at this header's end, does so in one line. Structs and arrays need no
+ *   alignment; pixels do (BhrImage).
  *
  * Pointers
  *   A pointer is NULL only where this header says that it may be. Everything that is passed in is copied before the
@@ -240,6 +241,9 @@ typedef struct BhrAdapterInfo {
     char driver[256];     /**< Name and version of the driver, UTF-8; "" where it is not known. */
 } BhrAdapterInfo;
 
+/** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_adapter_info_init(BhrAdapterInfo *info, size_t struct_size);
+
 /** Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last.
  * Adapters other than GL are looked for once in a process; bhr_context_recover looks again. */
 BHR_NODISCARD BhrStatus bhr_adapter_count(uint32_t *out_count);
@@ -276,6 +280,9 @@ typedef struct BhrWindow {
     int32_t screen;       /**< X11: the number of the window's screen; may be 0. */
     uint32_t reserved;    /**< Reserved: 0. */
 } BhrWindow;
+
+/** Sets struct_size and clears the rest: kind and handles have no defaults. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_window_init(BhrWindow *window, size_t struct_size);
 
 /* ---- context ---- */
 
@@ -374,6 +381,9 @@ typedef struct BhrHoleInfo {
     double camera_radius;    /**< Boyer-Lindquist r of the camera. */
     double camera_time_rate; /**< d tau / d t, the rate of the clock of the camera's observer. */
 } BhrHoleInfo;
+
+/** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_hole_info_init(BhrHoleInfo *info, size_t struct_size);
 
 /** Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
  * NaN. */
@@ -952,6 +962,9 @@ BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out
  * bhr_camera_advance tells how both go by (docs/cameras.md). */
 BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 
+/** Reads the time as it is set, scene lengths. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_get_time(const BhrContext *context, double *out_time);
+
 /* ---- presets: named looks ---- */
 
 /** A named look: values for all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky, which
@@ -1092,6 +1105,9 @@ typedef int32_t BhrView;
 /** Sets the view. Default BHR_VIEW_LIGHT. */
 BHR_NODISCARD BhrStatus bhr_set_view(BhrContext *context, BhrView view);
 
+/** Reads the view as it is set. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_get_view(const BhrContext *context, BhrView *out_view);
+
 /* ---- parts of a larger frame ---- */
 
 /** The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
@@ -1105,10 +1121,17 @@ typedef struct BhrRegion {
     uint32_t reserved;    /**< Reserved: 0. */
 } BhrRegion;
 
+/** Sets struct_size and clears the rest: the frame's size has no default. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_region_init(BhrRegion *region, size_t struct_size);
+
 /** Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
  * is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and INVALID_STATE for
  * 8-bit images of light with a film that has glare or a beam (see BhrFilm.bloom). */
 BHR_NODISCARD BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
+
+/** Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
+ * values of bhr_region_init. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *region, int32_t *out_present);
 
 /* ---- rendering into memory ---- */
 
@@ -1430,6 +1453,9 @@ typedef struct BhrProjectedPoint {
     double apparent[3];
 } BhrProjectedPoint;
 
+/** Fills in struct_size, which calls that fill the struct read, and what stands for no image. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_projected_point_init(BhrProjectedPoint *point, size_t struct_size);
+
 /** Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
  * inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
  * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. Every point outside the horizon has
@@ -1498,6 +1524,9 @@ typedef struct BhrFrameStats {
     uint64_t lens_tables;
 } BhrFrameStats;
 
+/** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_frame_stats_init(BhrFrameStats *stats, size_t struct_size);
+
 /** Numbers about the context's last finished frame. */
 BHR_NODISCARD BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
 
@@ -1507,6 +1536,54 @@ BHR_NODISCARD BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
 
 #ifdef __cplusplus
 }
+#endif
+
+/**
+ * BHR_INIT(camera); is bhr_camera_init(&camera, sizeof camera); and likewise for a variable of every other struct that
+ * begins with struct_size: the variable's type says which. It takes no pointer: write BHR_INIT(*camera). It gives no
+ * status, as nothing is wrong with a variable; a program that may meet a library older than the function calls that
+ * itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined. @since 0.2.0
+ */
+#if defined(__cplusplus)
+#define BHR_INIT(variable) BhrInit(variable)
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define BHR_INIT(variable) ((void)(BHR_INIT_BY_TYPE(variable) == BHR_OK))
+#elif defined(__GNUC__)
+#define BHR_INIT(variable) ((void)(__extension__ BHR_INIT_BY_TYPE(variable) == BHR_OK))
+#endif
+
+/** The structs that BHR_INIT knows, and their functions. */
+#define BHR_INIT_STRUCTS(EACH) \
+    EACH(BhrAdapterInfo, bhr_adapter_info_init) \
+    EACH(BhrWindow, bhr_window_init) \
+    EACH(BhrContextOptions, bhr_context_options_init) \
+    EACH(BhrHoleInfo, bhr_hole_info_init) \
+    EACH(BhrCamera, bhr_camera_init) \
+    EACH(BhrDisk, bhr_disk_init) \
+    EACH(BhrVolume, bhr_volume_init) \
+    EACH(BhrHotSpot, bhr_hot_spot_init) \
+    EACH(BhrImage, bhr_image_init) \
+    EACH(BhrSky, bhr_sky_init) \
+    EACH(BhrFilm, bhr_film_init) \
+    EACH(BhrPresetOptions, bhr_preset_options_init) \
+    EACH(BhrQuality, bhr_quality_init) \
+    EACH(BhrRegion, bhr_region_init) \
+    EACH(BhrOutput, bhr_output_init) \
+    EACH(BhrProjectedPoint, bhr_projected_point_init) \
+    EACH(BhrFrameStats, bhr_frame_stats_init)
+/** The structs of bhr_interop.h, where that is included. */
+#define BHR_INIT_MORE
+/** The struct's case in BHR_INIT. */
+#define BHR_INIT_CASE(Struct, init) , Struct : init
+/** The function that the variable's type asks for, called. */
+#define BHR_INIT_BY_TYPE(variable) \
+    _Generic((variable)BHR_INIT_STRUCTS(BHR_INIT_CASE) BHR_INIT_MORE)(&(variable), sizeof(variable))
+/** The struct's function in C++. */
+#define BHR_INIT_FUNCTION(Struct, init) \
+    inline void BhrInit(Struct &variable) { static_cast<void>(init(&variable, sizeof variable) == BHR_OK); }
+
+#ifdef __cplusplus
+BHR_INIT_STRUCTS(BHR_INIT_FUNCTION)
 #endif
 
 #endif

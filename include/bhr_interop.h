@@ -87,6 +87,9 @@ typedef struct BhrInteropInfo {
     int64_t drm_minor; /**< Its minor number; -1: not known. */
 } BhrInteropInfo;
 
+/** Sets struct_size and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_interop_info_init(BhrInteropInfo *info, size_t struct_size);
+
 /** Fills in info for the context's device. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_interop_info(const BhrContext *context, BhrInteropInfo *info);
 
@@ -184,6 +187,9 @@ BHR_NODISCARD BhrStatus bhr_target_create(BhrContext *context, const BhrTargetOp
 BHR_NODISCARD BhrStatus bhr_target_import(BhrContext *context, const BhrTargetOptions *options,
                                           const BhrTargetInfo *memory, const BhrHandle *handle, BhrTarget **out_target);
 
+/** Sets struct_size and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_target_info_init(BhrTargetInfo *info, size_t struct_size);
+
 /** Fills in info. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_target_info(const BhrTarget *target, BhrTargetInfo *info);
 
@@ -269,6 +275,9 @@ typedef struct BhrSync {
     const BhrSemaphoreValue *waits;   /**< All of them are waited for; NULL where wait_count is 0. */
     const BhrSemaphoreValue *signals; /**< All of them are signalled; NULL where signal_count is 0. */
 } BhrSync;
+
+/** Sets struct_size and clears the rest: nothing is waited for or signalled. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_sync_init(BhrSync *sync, size_t struct_size);
 
 /** Renders the scene as it is now into a target, and returns when the frame is submitted (docs/gpu.md). sync NULL:
  * no semaphores; then the host waits with the job. out_job NULL: no job; else the job ends when the GPU has made
@@ -399,6 +408,9 @@ typedef struct BhrVulkanDevice {
     void *release_user; /**< Handed to release. */
 } BhrVulkanDevice;
 
+/** Sets struct_size and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_vulkan_requirements_init(BhrVulkanRequirements *requirements, size_t struct_size);
+
 /** Says what bhr needs; physical_device NULL: of an instance only, and then instance may be NULL too. instance must
  * have been made with instance_extensions and api_version. A device that was made with all features and extensions
  * that the physical device has serves as well.
@@ -407,6 +419,9 @@ typedef struct BhrVulkanDevice {
  * without GRAPHICS, too low limits), and on macOS and iOS. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_vulkan_requirements(BhrGetInstanceProcAddr get_instance_proc_addr, void *instance,
                                                 void *physical_device, BhrVulkanRequirements *requirements);
+
+/** Sets struct_size and clears the rest. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_vulkan_device_init(BhrVulkanDevice *device, size_t struct_size);
 
 /** Makes a context, as bhr_context_create does, that works on a device of the host's: its frames go into the host's
  * own images. The device must have what bhr_vulkan_requirements says; a missing extension is found, and named, a
@@ -441,6 +456,21 @@ BHR_NODISCARD BhrStatus bhr_semaphore_wrap_vulkan(BhrContext *context, BhrSemaph
 
 #ifdef __cplusplus
 }
+#endif
+
+/** The structs of this header that BHR_INIT knows, and their functions. */
+#define BHR_INIT_INTEROP(EACH) \
+    EACH(BhrInteropInfo, bhr_interop_info_init) \
+    EACH(BhrTargetOptions, bhr_target_options_init) \
+    EACH(BhrTargetInfo, bhr_target_info_init) \
+    EACH(BhrSync, bhr_sync_init) \
+    EACH(BhrVulkanRequirements, bhr_vulkan_requirements_init) \
+    EACH(BhrVulkanDevice, bhr_vulkan_device_init)
+#ifdef __cplusplus
+BHR_INIT_INTEROP(BHR_INIT_FUNCTION)
+#else
+#undef BHR_INIT_MORE
+#define BHR_INIT_MORE BHR_INIT_INTEROP(BHR_INIT_CASE)
 #endif
 
 #endif

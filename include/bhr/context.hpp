@@ -270,16 +270,7 @@ class Context {
 
     Result<void> set_disk(const std::optional<Disk> &disk) { return set_or_none(bhr_set_disk, disk); }
     /// bhr_get_disk.
-    Result<std::optional<Disk>> disk() const {
-        std::int32_t present = 0;
-        const Result<Disk> disk = detail::ask_struct<Disk, BhrDisk>([&](BhrDisk *it) {
-            return bhr_get_disk(get(), it, &present);
-        });
-        if (!disk) {
-            return disk.error();
-        }
-        return present != 0 ? std::optional<Disk>(*disk) : std::optional<Disk>();
-    }
+    Result<std::optional<Disk>> disk() const { return filled_or_none<Disk, BhrDisk>(bhr_get_disk); }
 
     /// bhr_set_volumes: all of them; an empty list for none.
     Result<void> set_volumes(span<const Volume> volumes) {
@@ -311,19 +302,14 @@ class Context {
         return detail::call([&] { return bhr_set_effects(get(), static_cast<std::uint32_t>(effects)); });
     }
     /// bhr_get_effects.
-    Result<Effects> effects() const {
-        return detail::ask(Effects::none, [&](Effects &effects) {
-            std::uint32_t bits = 0;
-            const BhrStatus status = bhr_get_effects(get(), &bits);
-            effects = static_cast<Effects>(bits);
-            return status;
-        });
-    }
+    Result<Effects> effects() const { return constant<Effects>(bhr_get_effects); }
 
     /// bhr_set_time: in scene lengths, which no clock counts.
     Result<void> set_time(double time) {
         return detail::call([&] { return bhr_set_time(get(), time); });
     }
+    /// bhr_get_time.
+    Result<double> time() const { return detail::ask(0.0, [&](double &to) { return bhr_get_time(get(), &to); }); }
     Result<void> set_preset(Preset preset) {
         return detail::call([&] { return bhr_set_preset(get(), static_cast<BhrPreset>(preset)); });
     }
@@ -343,7 +329,11 @@ class Context {
     Result<void> set_view(View view) {
         return detail::call([&] { return bhr_set_view(get(), static_cast<BhrView>(view)); });
     }
+    /// bhr_get_view.
+    Result<View> view() const { return constant<View>(bhr_get_view); }
     Result<void> set_region(const std::optional<Region> &region) { return set_or_none(bhr_set_region, region); }
+    /// bhr_get_region.
+    Result<std::optional<Region>> region() const { return filled_or_none<Region, BhrRegion>(bhr_get_region); }
 
     /* ---- frames ---- */
 
@@ -582,6 +572,14 @@ class Context {
     template <class C, class T>
     Result<void> set_or_none(BhrStatus (*setter)(BhrContext *, const C *), const std::optional<T> &value) {
         return value ? set(setter, value->c()) : detail::call([&] { return setter(get(), nullptr); });
+    }
+    template <class T, class C>
+    Result<std::optional<T>> filled_or_none(BhrStatus (*getter)(const BhrContext *, C *, std::int32_t *)) const {
+        return detail::ask_or_none<T, C>([&](C *it, std::int32_t *present) { return getter(get(), it, present); });
+    }
+    template <class T, class C> Result<T> constant(BhrStatus (*getter)(const BhrContext *, C *)) const {
+        const Result<C> number = detail::ask(C(0), [&](C &to) { return getter(get(), &to); });
+        return number ? Result<T>(static_cast<T>(*number)) : Result<T>(number.error());
     }
     template <class T, class C> Result<T> filled(BhrStatus (*getter)(const BhrContext *, C *)) const {
         return detail::ask_struct<T, C>([&](C *it) { return getter(get(), it); });

@@ -323,7 +323,7 @@ class Target {
     /// bhr_target_info.
     Result<TargetInfo> info() const {
         return detail::ask(TargetInfo(), [&](TargetInfo &info) {
-            info.struct_size = sizeof info;
+            BHR_INIT(info);
             return bhr_target_info(get(), &info);
         });
     }
@@ -368,7 +368,7 @@ inline Output output_into(OutputKind kind, const Target &target, std::uint32_t n
 /// bhr_interop_info.
 inline Result<InteropInfo> interop_info(const Context &context) {
     return detail::ask(InteropInfo(), [&](InteropInfo &info) {
-        info.struct_size = sizeof info;
+        BHR_INIT(info);
         return bhr_interop_info(context.get(), &info);
     });
 }
@@ -462,7 +462,7 @@ inline Result<void> set_sky_target_as(Context &context, const Target *target, Pr
 inline Result<VulkanRequirements> vulkan_requirements(BhrGetInstanceProcAddr get_instance_proc_addr,
                                                       void *instance = nullptr, void *physical_device = nullptr) {
     return detail::ask(VulkanRequirements(), [&](VulkanRequirements &to) {
-        to.struct_size = sizeof to;
+        BHR_INIT(to);
         return bhr_vulkan_requirements(get_instance_proc_addr, instance, physical_device, &to);
     });
 }

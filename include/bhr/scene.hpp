@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -287,11 +288,21 @@ template <class T, class C> void defaults(T &object, BhrStatus (*init)(C *, std:
 template <class T, class C, class Function> Result<T> ask_struct(Function &&function) {
     return ask(T(), [&](T &object) {
         C copy{};
-        copy.struct_size = sizeof copy;
+        BHR_INIT(copy);
         const BhrStatus status = function(&copy);
         take(object, copy);
         return status;
     });
+}
+
+/// Asks for one that may not be there.
+template <class T, class C, class Function> Result<std::optional<T>> ask_or_none(Function &&function) {
+    std::int32_t    present = 0;
+    const Result<T> value = ask_struct<T, C>([&](C *it) { return function(it, &present); });
+    if (!value) {
+        return value.error();
+    }
+    return present != 0 ? std::optional<T>(*value) : std::optional<T>();
 }
 
 } // namespace detail

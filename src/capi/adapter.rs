@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrAdapterInfo and BhrBackend: what bhr can run on.
 
-use super::entry::outside_callbacks;
+use super::entry::{anywhere, outside_callbacks};
 use super::message::copy_text;
 use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
-use super::versioned::{OutStruct, Versioned};
+use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::tracer::{AdapterInfo, Backend};
 use crate::tracers;
@@ -111,6 +111,13 @@ pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
         BHR_BACKEND_GL => Backend::Gl,
         _ => return unknown(value, "options backend", "BHR_BACKEND_AUTO (0) to BHR_BACKEND_GL (5)"),
     }))
+}
+
+/// Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_adapter_info_init(info: *mut BhrAdapterInfo, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_adapter_info_init", || unsafe { versioned::init(info, "info", struct_size) })
 }
 
 /// Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last.

@@ -67,3 +67,17 @@ pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> Bh
         })
     }
 }
+
+/// Reads the time as it is set, scene lengths. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_time(context: *const BhrContext, out_time: *mut f64) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let time = Out::cleared(out_time);
+        on_context("bhr_get_time", context, |state| {
+            time.required("out_time")?;
+            time.set(state.renderer.scene.time);
+            Ok(())
+        })
+    }
+}

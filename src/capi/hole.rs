@@ -3,9 +3,10 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::entry::anywhere;
 use super::pointer::{Out, read_vector};
 use super::status::BhrStatus;
-use super::versioned::{OutStruct, Versioned};
+use super::versioned::{self, OutStruct, Versioned};
 use crate::scene::Hole;
 use crate::scene::query::HoleInfo;
 
@@ -141,6 +142,13 @@ impl From<HoleInfo> for BhrHoleInfo {
             camera_time_rate: info.camera_time_rate,
         }
     }
+}
+
+/// Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_hole_info_init(info: *mut BhrHoleInfo, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_hole_info_init", || unsafe { versioned::init(info, "info", struct_size) })
 }
 
 /// Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are

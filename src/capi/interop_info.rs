@@ -3,10 +3,10 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::outside_callbacks;
+use super::entry::{anywhere, outside_callbacks};
 use super::pointer::Out;
 use super::status::BhrStatus;
-use super::versioned::{OutStruct, Versioned};
+use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, ErrorKind, Result};
 use crate::tracers;
 
@@ -81,6 +81,13 @@ unsafe impl Versioned for BhrInteropInfo {
             drm_minor: -1,
         }
     }
+}
+
+/// Sets struct_size and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_interop_info_init(info: *mut BhrInteropInfo, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_interop_info_init", || unsafe { versioned::init(info, "info", struct_size) })
 }
 
 /// Fills in info for the context's device. @since 0.2.0

@@ -3,6 +3,7 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::entry::anywhere;
 use super::interop_semaphore::BhrSemaphore;
 use super::interop_target::BhrTarget;
 use super::job::{self, BhrJob};
@@ -128,6 +129,13 @@ unsafe fn render_target(
             renderer.render_target(&target.target, region, sync, submits)
         })
     }
+}
+
+/// Sets struct_size and clears the rest: nothing is waited for or signalled. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_sync_init(sync: *mut BhrSync, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_sync_init", || unsafe { versioned::init(sync, "sync", struct_size) })
 }
 
 /// Renders the scene as it is now into a target, and returns when the frame is submitted (docs/gpu.md). sync NULL:

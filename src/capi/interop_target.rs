@@ -369,6 +369,13 @@ pub(super) fn close(fd: i32) {
     let _ = fd;
 }
 
+/// Sets struct_size and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_target_info_init(info: *mut BhrTargetInfo, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_target_info_init", || unsafe { versioned::init(info, "info", struct_size) })
+}
+
 /// Fills in info. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_info(target: *const BhrTarget, info: *mut BhrTargetInfo) -> BhrStatus {

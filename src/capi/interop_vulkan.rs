@@ -3,7 +3,7 @@
 
 use super::callback::InsideCallback;
 use super::context::{self, BhrContext, BhrContextOptions};
-use super::entry::outside_callbacks;
+use super::entry::{anywhere, outside_callbacks};
 use super::interop_semaphore::{self, BhrSemaphore, BhrSemaphoreKind};
 use super::interop_target::{self, BHR_TARGET_COPY, BhrTarget, BhrTargetOptions};
 use super::log::User;
@@ -183,6 +183,16 @@ fn loader(function: BhrGetInstanceProcAddr) -> *const c_void {
     function.map_or(null(), |function| function as *const c_void)
 }
 
+/// Sets struct_size and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_vulkan_requirements_init(
+    requirements: *mut BhrVulkanRequirements,
+    struct_size: usize,
+) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_vulkan_requirements_init", || unsafe { versioned::init(requirements, "requirements", struct_size) })
+}
+
 /// Says what bhr needs; physical_device NULL: of an instance only, and then instance may be NULL too. instance must
 /// have been made with instance_extensions and api_version. A device that was made with all features and extensions
 /// that the physical device has serves as well.
@@ -263,6 +273,13 @@ unsafe fn host_of(given: &BhrVulkanDevice) -> Result<HostVulkan> {
         device_extensions,
         lock,
     })
+}
+
+/// Sets struct_size and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_vulkan_device_init(device: *mut BhrVulkanDevice, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_vulkan_device_init", || unsafe { versioned::init(device, "device", struct_size) })
 }
 
 /// Makes a context, as bhr_context_create does, that works on a device of the host's: its frames go into the host's

@@ -3,6 +3,7 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::entry::anywhere;
 use super::pointer::read_vector;
 use super::rays::{Array, BhrRay, CHUNK, frame_pixels};
 use super::status::BhrStatus;
@@ -86,6 +87,13 @@ impl From<Projected> for BhrProjectedPoint {
             apparent: image.map_or(DVec3::NAN, |image| image.apparent).to_array(),
         }
     }
+}
+
+/// Fills in struct_size, which calls that fill the struct read, and what stands for no image. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_projected_point_init(point: *mut BhrProjectedPoint, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_projected_point_init", || unsafe { versioned::init(point, "point", struct_size) })
 }
 
 /// Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the

@@ -3,9 +3,10 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::pointer::check_reserved;
+use super::entry::anywhere;
+use super::pointer::{Out, check_reserved};
 use super::status::BhrStatus;
-use super::versioned::{self, Versioned};
+use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::Region;
 
@@ -37,6 +38,12 @@ unsafe impl Versioned for BhrRegion {
     }
 }
 
+impl From<Region> for BhrRegion {
+    fn from(set: Region) -> Self {
+        Self { full_width: set.full_width, full_height: set.full_height, x: set.x, y: set.y, ..Self::defaults() }
+    }
+}
+
 impl TryFrom<BhrRegion> for Region {
     type Error = Error;
 
@@ -46,6 +53,13 @@ impl TryFrom<BhrRegion> for Region {
         region.check()?;
         Ok(region)
     }
+}
+
+/// Sets struct_size and clears the rest: the frame's size has no default. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_region_init(region: *mut BhrRegion, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_region_init", || unsafe { versioned::init(region, "region", struct_size) })
 }
 
 /// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
@@ -60,6 +74,30 @@ pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const
                 true => None,
                 false => Some(versioned::read(region, "region")?.try_into()?),
             };
+            Ok(())
+        })
+    }
+}
+
+/// Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
+/// values of bhr_region_init. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_region(
+    context: *const BhrContext,
+    region: *mut BhrRegion,
+    out_present: *mut i32,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let region = OutStruct::cleared(region, "region");
+        let present = Out::cleared(out_present);
+        on_context("bhr_get_region", context, |state| {
+            present.required("out_present")?;
+            match state.region {
+                Some(set) => region.set(&set.into())?,
+                None => region.set_defaults()?,
+            }
+            present.set(state.region.is_some().into());
             Ok(())
         })
     }

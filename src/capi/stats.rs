@@ -3,9 +3,10 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::entry::anywhere;
 use super::job::{self, BhrJob};
 use super::status::BhrStatus;
-use super::versioned::{OutStruct, Versioned};
+use super::versioned::{self, OutStruct, Versioned};
 use crate::error::Error;
 use crate::tracer::FrameStats;
 
@@ -59,6 +60,13 @@ impl From<FrameStats> for BhrFrameStats {
             lens_tables: stats.lens_tables,
         }
     }
+}
+
+/// Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_frame_stats_init(stats: *mut BhrFrameStats, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_frame_stats_init", || unsafe { versioned::init(stats, "stats", struct_size) })
 }
 
 /// Numbers about the context's last finished frame.

@@ -3,7 +3,7 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::pointer::unknown;
+use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
 use crate::error::Result;
 use crate::scene::View;
@@ -46,6 +46,19 @@ pub(super) fn view(number: BhrView, name: &str) -> Result<View> {
     })
 }
 
+fn number(view: View) -> BhrView {
+    match view {
+        View::Light => BHR_VIEW_LIGHT,
+        View::Redshift => BHR_VIEW_REDSHIFT,
+        View::Order => BHR_VIEW_ORDER,
+        View::Deflection => BHR_VIEW_DEFLECTION,
+        View::Steps => BHR_VIEW_STEPS,
+        View::Metric => BHR_VIEW_METRIC,
+        View::OpticalDepth => BHR_VIEW_OPTICAL_DEPTH,
+        View::Intensity => BHR_VIEW_INTENSITY,
+    }
+}
+
 /// Sets the view. Default BHR_VIEW_LIGHT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_view(context: *mut BhrContext, view: BhrView) -> BhrStatus {
@@ -53,6 +66,20 @@ pub unsafe extern "C" fn bhr_set_view(context: *mut BhrContext, view: BhrView) -
     unsafe {
         on_context("bhr_set_view", context, |state| {
             state.renderer.scene.view = self::view(view, "view")?;
+            Ok(())
+        })
+    }
+}
+
+/// Reads the view as it is set. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_view(context: *const BhrContext, out_view: *mut BhrView) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let view = Out::cleared(out_view);
+        on_context("bhr_get_view", context, |state| {
+            view.required("out_view")?;
+            view.set(number(state.renderer.scene.view));
             Ok(())
         })
     }

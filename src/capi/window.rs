@@ -2,7 +2,9 @@
 //! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked
 //! here; nothing behind its pointers is touched.
 
+use super::entry::anywhere;
 use super::pointer::{check_reserved, unknown};
+use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::window::NativeWindow;
@@ -87,6 +89,13 @@ unsafe impl Versioned for BhrWindow {
             reserved: 0,
         }
     }
+}
+
+/// Sets struct_size and clears the rest: kind and handles have no defaults. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_window_init(window: *mut BhrWindow, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_window_init", || unsafe { versioned::init(window, "window", struct_size) })
 }
 
 /// The host's window, checked. Errors: INVALID_ARGUMENT for NULL, an unknown kind, or a field its kind needs and

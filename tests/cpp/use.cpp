@@ -148,7 +148,7 @@ static void scene() {
     EXPECT(context.set_film(film) && context.film().value().tone_map == bhr::ToneMap::agx);
     EXPECT(context.set_effects(bhr::Effects::all & ~bhr::Effects::beaming));
     EXPECT(!bhr::has(context.effects().value(), bhr::Effects::beaming));
-    EXPECT(context.set_time(12.5));
+    EXPECT(context.set_time(12.5) && context.time().value() == 12.5);
     bhr::Quality quality;
     quality.method = bhr::Method::rk4;
     quality.volume_resolution = bhr::VolumeResolution::half;
@@ -229,14 +229,15 @@ static void frames(const std::string &folder) {
     region.full_width = WIDTH;
     region.full_height = HEIGHT;
     region.x = WIDTH / 2;
-    EXPECT(context.set_region(region));
+    EXPECT(!context.region().value());
+    EXPECT(context.set_region(region) && context.region().value()->x == WIDTH / 2);
     const bhr::Frame half = context.render(WIDTH / 2, HEIGHT).value();
     EXPECT(half.channel<std::uint32_t>(0, 20) == frame.channel<std::uint32_t>(WIDTH / 2, 20));
     EXPECT(context.set_region(std::nullopt));
     EXPECT(context.render(WIDTH, 0).status() == bhr::StatusCode::invalid_argument);
     EXPECT(context.render(1u << 21, 1).status() == bhr::StatusCode::invalid_argument);
     EXPECT(context.render(1u << 20, 1u << 20, bhr::Format::rgba32f).status() == bhr::StatusCode::out_of_memory);
-    EXPECT(context.set_view(bhr::View::redshift));
+    EXPECT(context.set_view(bhr::View::redshift) && context.view().value() == bhr::View::redshift);
     const bhr::Frame shift = context.render(WIDTH, HEIGHT, bhr::Format::r32f).value();
     EXPECT(shift.channel<float>(1, 1) > 0.5f && shift.channel<float>(1, 1) < 1.5f);
     EXPECT(context.set_view(bhr::View::light));

@@ -25,6 +25,7 @@ pub fn code_of(text: &str) -> String {
         rest = after.split_once("*/").expect("a comment ends").1;
     }
     code += rest;
+    code = code.replace("\\\n", " ");
     code.lines().filter(|line| !line.trim_start().starts_with('#')).map(|line| format!("{line}\n")).collect()
 }
 
@@ -37,12 +38,12 @@ pub fn functions(text: &str) -> BTreeSet<String> {
     words(&code_of(text)).filter(|word| word.starts_with("bhr_")).map(str::to_owned).collect()
 }
 
-/// The constants that a header defines.
+/// The constants that a header defines: not its macros.
 pub fn constants(text: &str) -> BTreeSet<String> {
     text.lines()
         .filter_map(|line| line.strip_prefix("#define "))
-        .filter_map(|definition| words(definition).next())
-        .filter(|name| *name != "BHR_H" && *name != "BHR_NODISCARD")
+        .filter_map(|definition| words(definition).next().filter(|name| !definition[name.len()..].starts_with('(')))
+        .filter(|name| !["BHR_H", "BHR_NODISCARD", "BHR_INIT_MORE"].contains(name))
         .map(str::to_owned)
         .collect()
 }

@@ -89,14 +89,65 @@ extern "C" {
 #endif
 "#;
 
-/// After the last section.
-const CLOSING: &str = "
+/// After the last section of include/bhr.h: {} is a line for each struct with a function *_init.
+const CLOSING: &str = r#"
 #ifdef __cplusplus
 }
 #endif
 
+/**
+ * BHR_INIT(camera); is bhr_camera_init(&camera, sizeof camera); and likewise for a variable of every other struct that
+ * begins with struct_size: the variable's type says which. It takes no pointer: write BHR_INIT(*camera). It gives no
+ * status, as nothing is wrong with a variable; a program that may meet a library older than the function calls that
+ * itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined. @since 0.2.0
+ */
+#if defined(__cplusplus)
+#define BHR_INIT(variable) BhrInit(variable)
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define BHR_INIT(variable) ((void)(BHR_INIT_BY_TYPE(variable) == BHR_OK))
+#elif defined(__GNUC__)
+#define BHR_INIT(variable) ((void)(__extension__ BHR_INIT_BY_TYPE(variable) == BHR_OK))
 #endif
-";
+
+/** The structs that BHR_INIT knows, and their functions. */
+#define BHR_INIT_STRUCTS(EACH) \
+{}
+/** The structs of bhr_interop.h, where that is included. */
+#define BHR_INIT_MORE
+/** The struct's case in BHR_INIT. */
+#define BHR_INIT_CASE(Struct, init) , Struct : init
+/** The function that the variable's type asks for, called. */
+#define BHR_INIT_BY_TYPE(variable) \
+    _Generic((variable)BHR_INIT_STRUCTS(BHR_INIT_CASE) BHR_INIT_MORE)(&(variable), sizeof(variable))
+/** The struct's function in C++. */
+#define BHR_INIT_FUNCTION(Struct, init) \
+    inline void BhrInit(Struct &variable) { static_cast<void>(init(&variable, sizeof variable) == BHR_OK); }
+
+#ifdef __cplusplus
+BHR_INIT_STRUCTS(BHR_INIT_FUNCTION)
+#endif
+
+#endif
+"#;
+
+/// After the last section of include/bhr_interop.h.
+const INTEROP_CLOSING: &str = r#"
+#ifdef __cplusplus
+}
+#endif
+
+/** The structs of this header that BHR_INIT knows, and their functions. */
+#define BHR_INIT_INTEROP(EACH) \
+{}
+#ifdef __cplusplus
+BHR_INIT_INTEROP(BHR_INIT_FUNCTION)
+#else
+#undef BHR_INIT_MORE
+#define BHR_INIT_MORE BHR_INIT_INTEROP(BHR_INIT_CASE)
+#endif
+
+#endif
+"#;
 
 /// The longest line of the header.
 const MAX_LINE: usize = 120;
@@ -237,13 +288,13 @@ pub fn generate() -> String {
     let preface = config.header.take().unwrap_or_default();
     let (begin, rest) = preface.trim().split_once("\n *\n * Example\n").expect("the preface has an example");
     let preface = format!("{begin}\n{}\n *\n * Example\n{rest}", contents());
-    with_sections(format!("{preface}\n{OPENING}"), &SECTIONS, &config)
+    with_sections(format!("{preface}\n{OPENING}"), &SECTIONS, &config, CLOSING)
 }
 
 pub fn generate_interop() -> String {
     let preface = config("cbindgen-interop.toml").header.unwrap_or_default();
     let config = cbindgen::Config { header: None, ..config("cbindgen.toml") };
-    with_sections(format!("{}\n{INTEROP_OPENING}", preface.trim()), &INTEROP_SECTIONS, &config)
+    with_sections(format!("{}\n{INTEROP_OPENING}", preface.trim()), &INTEROP_SECTIONS, &config, INTEROP_CLOSING)
 }
 
 fn config(file: &str) -> cbindgen::Config {
@@ -265,12 +316,23 @@ fn contents() -> String {
     lines.join("\n")
 }
 
-fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config) -> String {
+fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config, closing: &str) -> String {
     for (file, title) in sections {
         let path = root().join("src/capi").join(file).with_extension("rs");
         header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, config));
     }
-    header + CLOSING
+    let structs = structs_with_init(&header);
+    header + &closing.replacen("{}", &structs, 1)
+}
+
+/// The entries of BHR_INIT_STRUCTS: each struct that a function bhr_*_init(*, size_t) of the header fills.
+fn structs_with_init(header: &str) -> String {
+    let entries = header.split("BhrStatus bhr_").skip(1).filter_map(|function| {
+        let (name, parameters) = function.split_once(");")?.0.split_once("_init(")?;
+        let (of, _) = parameters.strip_suffix(", size_t struct_size")?.split_once(" *")?;
+        (!name.contains('(')).then(|| format!("    EACH({of}, bhr_{name}_init)"))
+    });
+    entries.collect::<Vec<_>>().join(" \\\n")
 }
 
 /// The declarations of one source file, in that file's order. Types of other sections are named without being known,

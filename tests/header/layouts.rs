@@ -68,6 +68,11 @@ fn words_of(path: &Path) -> Vec<String> {
     code.split(|c: char| !c.is_alphanumeric() && c != '_').map(str::to_owned).collect()
 }
 
+/// The functions that C++ calls by BHR_INIT, by the type of what they fill in.
+fn is_behind_init(function: &str) -> bool {
+    function.ends_with("_init")
+}
+
 #[test]
 fn bhr_hpp_names_every_function_and_constant() {
     /// Values that C++ has no use for: they are in other functions, or BHR_MAX_CROSSINGS is the size of an array.
@@ -75,7 +80,8 @@ fn bhr_hpp_names_every_function_and_constant() {
     let parts = std::fs::read_dir(root().join("include/bhr")).unwrap().map(|part| part.unwrap().path());
     let named = parts.filter(|part| !part.ends_with("interop.hpp")).flat_map(|part| words_of(&part));
     let named: BTreeSet<_> = named.collect();
-    let wanted = functions(HEADER).into_iter().chain(constants(HEADER));
+    assert!(named.contains("BHR_INIT"), "structs that are asked for are filled in by it");
+    let wanted = functions(HEADER).into_iter().chain(constants(HEADER)).filter(|name| !is_behind_init(name));
     let missing: Vec<_> = wanted.filter(|name| !named.contains(name) && !OTHERWISE.contains(&name.as_str())).collect();
     assert!(missing.is_empty(), "include/bhr/ has no {missing:?}");
 }
@@ -84,7 +90,8 @@ fn bhr_hpp_names_every_function_and_constant() {
 fn interop_hpp_names_every_function_and_constant() {
     let named: BTreeSet<_> = words_of(&root().join("include/bhr/interop.hpp")).into_iter().collect();
     let constants = constants(INTEROP).into_iter().filter(|name| name != "BHR_INTEROP_H");
-    let wanted: Vec<_> = functions(INTEROP).into_iter().chain(constants).collect();
+    let wanted = functions(INTEROP).into_iter().chain(constants).filter(|name| !is_behind_init(name));
+    let wanted: Vec<_> = wanted.collect();
     assert!(wanted.len() > 30, "{wanted:?}");
     let missing: Vec<_> = wanted.iter().filter(|name| !named.contains(*name)).collect();
     assert!(missing.is_empty(), "include/bhr/interop.hpp has no {missing:?}");

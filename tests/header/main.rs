@@ -6,6 +6,7 @@ mod abi;
 mod c_header;
 mod contract;
 mod generated;
+mod init;
 mod json;
 mod layouts;
 mod model;

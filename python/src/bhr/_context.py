@@ -68,7 +68,7 @@ class Context(Tracing):
     """
 
     # A slip in an attribute's name is an AttributeError instead of a setting that nobody reads.
-    __slots__ = ("__weakref__", "_adapter_name", "_quality_lock", "_region", "_targets", "_time", "_view", "_waiter")
+    __slots__ = ("__weakref__", "_adapter_name", "_quality_lock", "_targets", "_waiter")
 
     def __init__(
         self,
@@ -101,8 +101,6 @@ class Context(Tracing):
         self._name_adapter()
         self._quality_lock = threading.RLock()
         self._waiter = Waiter()
-        self._view, self._time = View.LIGHT, 0.0
-        self._region: Region | None = None
         #: What frames read from targets (interop.py), which must not end while it is set.
         self._targets: dict[str, Any] = {}
         _contexts.add(self)
@@ -380,33 +378,38 @@ class Context(Tracing):
     @property
     def time(self) -> float:
         """The scene's time in scene lengths, which turns the disk. Default 0."""
-        return self._time
+        time = ffi.new("double *")
+        with self._gate as context:
+            check(lib.bhr_get_time(context, time))
+        return float(time[0])
 
     @time.setter
     def time(self, time: float) -> None:
         self._set(lib.bhr_set_time, time)
-        self._time = float(time)
 
     @property
     def view(self) -> View:
         """The quantity that pixels show. Default LIGHT."""
-        return self._view
+        view = ffi.new("BhrView *")
+        with self._gate as context:
+            check(lib.bhr_get_view(context, view))
+        return View(view[0])
 
     @view.setter
     def view(self, view: ViewLike) -> None:
-        chosen = member(View, view, "view")
-        self._set(lib.bhr_set_view, chosen)
-        self._view = chosen
+        self._set(lib.bhr_set_view, member(View, view, "view"))
 
     @property
     def region(self) -> Region | None:
         """The part of a larger frame that images hold; None (default): all of it."""
-        return self._region
+        struct, present = new("BhrRegion"), ffi.new("int32_t *")
+        with self._gate as context:
+            check(lib.bhr_get_region(context, struct, present))
+        return Region.from_c(struct) if present[0] else None
 
     @region.setter
     def region(self, region: Region | None) -> None:
         self._set(lib.bhr_set_region, Region.c_of(region, "region", or_none=True))
-        self._region = region
 
     def set_occluder(self, distances: Frame | npt.NDArray[Any] | None, *, lensed: bool = False) -> None:
         """Sets the program's own things before the camera: distances along the pixels' lines of sight, float32 of shape
