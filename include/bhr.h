@@ -69,10 +69,10 @@
  *   check their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
  *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
  *
- *   Below, errors are named without BHR_ERROR_. Not named each time are INVALID_ARGUMENT for NULL, a wrong struct_size,
- *   a number that is not finite or outside its range, and an unknown constant or flag; INVALID_STATE inside callbacks;
- *   OUT_OF_MEMORY and DEVICE_LOST, where something is made, rendered or traced; INTERNAL, a bug in bhr, after which
- *   only destroy calls are valid on that context, its jobs and its surfaces.
+ *   Below, errors are named without BHR_ERROR_. Not named each time are INVALID_ARGUMENT for NULL, a wrong struct_size
+ *   or size of an array's elements, a number that is not finite or outside its range, and an unknown constant or flag;
+ *   INVALID_STATE inside callbacks; OUT_OF_MEMORY and DEVICE_LOST, where something is made, rendered or traced;
+ *   INTERNAL, a bug in bhr, after which only destroy calls are valid on that context, its jobs and its surfaces.
  *
  * Versions
  *   Until BHR_ABI_VERSION rises, a later library runs every program that was compiled against this header. Versions add
