@@ -157,7 +157,7 @@ fn turbulence_shows_its_seed_and_its_time() {
         ("time", |r| r.scene.time += 20.0),
         ("delay", |r| r.scene.effects.0 ^= Effects::LIGHT_DELAY),
     ];
-    // What they show of seed and time does not depend on where the camera is: everyday one scene from outside, one
+    // Seed and time show alike wherever the camera is: everyday one scene from outside, one
     // from inside the horizon.
     let everyday = ["turbulent, retrograde, translucent, without delay", "turbulent, from inside the horizon"];
     for (name, set) in scenes()

@@ -8,7 +8,7 @@ use crate::allocate::{collected, with_room};
 use crate::error::{Error, Result};
 use crate::gpu::frame::plan::f32_settings::{ray_settings, variant};
 use crate::gpu::frame::uniforms::rays::{RayEnd, RayStart, RaysUniform};
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer};
@@ -85,7 +85,7 @@ impl GpuTracer {
     fn run(&mut self, scene: &Scene, starts: &[RayStart]) -> Result<Vec<RayEnd>> {
         let device = &self.device;
         let settings = ray_settings(scene);
-        let compiled = self.kernels.get(KernelKey::Rays(variant(scene, &settings, true)))?;
+        let compiled = self.kernels.get(KernelKey::new(KernelKind::Rays, &[&variant(scene, &settings, true)]))?;
         if self.ray_buffers.resources.is_none() {
             let bytes = |size: usize| (CHUNK * size) as u64;
             self.ray_buffers.resources = Some([

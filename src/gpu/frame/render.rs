@@ -19,8 +19,8 @@ use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::frame::submission::begun_frame::{BegunFrame, ExtraCommands};
 use crate::gpu::frame::submission::delivery::Delivery;
 use crate::gpu::frame::submission::under_way::Submission;
-use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
+use crate::gpu::kernel::variant::{PixelTarget, RecordMaker};
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
 use std::collections::VecDeque;
@@ -162,7 +162,7 @@ impl GpuTracer {
         let beside = beside.transpose()?;
         let mut needed = if pictured { setup.kernels() } else { Vec::new() };
         needed.extend(scene.shown_picture().into_iter().flat_map(|picture| level_kernels(&self.device, picture)));
-        needed.extend(takes_rows(scene).then_some(KernelKey::OccluderRows));
+        needed.extend(takes_rows(scene).then(|| KernelKey::from(KernelKind::OccluderRows)));
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
         let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
@@ -283,14 +283,13 @@ fn cost_of_pixel(scene: &Scene, setup: &Setup, beside: Option<&BesideSetup>, pac
     let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
     // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
     // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
-    let steps_of = |source, in_kerr| match source {
-        RecordSource::Traced => scene.expected_steps(),
-        RecordSource::Schwarzschild { .. } => 2,
-        RecordSource::Kerr { .. } => in_kerr,
+    let steps_of = |setup: &Setup, in_kerr| match setup.record_setup.source.maker {
+        RecordMaker::Traced => scene.expected_steps(),
+        RecordMaker::Schwarzschild => 2,
+        RecordMaker::Kerr | RecordMaker::KerrDeferred => in_kerr,
     };
     let traced = beside.filter(|beside| beside.takes_rays());
-    let ray_steps = steps_of(setup.record_setup.source, 8)
-        + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source, 3).div_ceil(samples.into()));
+    let ray_steps = steps_of(setup, 8) + traced.map_or(0, |beside| steps_of(&beside.setup, 3).div_ceil(samples.into()));
     // Packed pixels have two staging buffers.
     let bytes = setup.record_setup.bytes_per_pixel()
         + beside.map_or(0, BesideSetup::bytes_per_pixel)

@@ -19,7 +19,7 @@ use crate::gpu::frame::uniforms::outputs::OutputsUniform;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::stage::{check_groups, pixel_groups};
-use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordSource};
+use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordMaker, RecordSource};
 use crate::gpu::lens::records::{RecordStages, STEP_SUM};
 use crate::gpu::lens::traced::Shared;
 use crate::scene::{RayOutput, Scene};
@@ -77,10 +77,10 @@ impl GpuTracer {
         let setup = self.planner().set_up(scene, request, PixelTarget::Packed)?;
         let batch = self.kernels.begin(&setup.output_kernels(OutputPlaces::default()));
         let pixel_bytes = 4 * outputs.iter().map(|output| output.words() as u64).sum::<u64>();
-        let ray_steps = match setup.record_setup.source {
-            RecordSource::Traced => scene.expected_steps(),
-            RecordSource::Schwarzschild { .. } => 2,
-            RecordSource::Kerr { .. } => 8,
+        let ray_steps = match setup.record_setup.source.maker {
+            RecordMaker::Traced => scene.expected_steps(),
+            RecordMaker::Schwarzschild => 2,
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => 8,
         };
         // The numbers have two staging buffers.
         let bytes = setup.record_setup.bytes_per_pixel() + 3 * pixel_bytes;

@@ -10,7 +10,7 @@ use crate::gpu::frame::resources::output_buffers::OutputBuffers;
 use crate::gpu::frame::resources::ray_buffers::RayBuffers;
 use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::kernel::kernels::{KernelWaits, Kernels};
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::tracer::Backend;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ impl GpuTracer {
         // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a
         // device's first pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by
         // side.
-        kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
+        kernels.get(KernelKind::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         let mut tracer = Self {
             adapter: Arc::new(adapter),
             device,

@@ -115,17 +115,18 @@ impl PipelineCache {
     }
 
     fn compile(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
-        let layouts = key.groups().iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
+        let kind = key.kind;
+        let layouts = kind.groups().iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let pipeline = device.compute_pipeline(&Kernel {
-            label: key.entry_point(),
-            source: &[&key.wgsl()?],
+            label: kind.entry_point(),
+            source: &[&kind.wgsl()?],
             loops: LOOPS,
-            entry_point: key.entry_point(),
+            entry_point: kind.entry_point(),
             constants: &key.constants(),
             zero_workgroup_memory: false,
             groups: &layouts.iter().collect::<Vec<_>>(),
         })?;
-        Ok(Compiled { pipeline, layouts, group: key.workgroup() })
+        Ok(Compiled { pipeline, layouts, group: kind.workgroup() })
     }
 
     pub(in crate::gpu) fn layout(&self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {

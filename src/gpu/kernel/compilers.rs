@@ -95,7 +95,7 @@ impl Drop for CompileBatch {
 impl CompileBatch {
     /// The entry points, for the log.
     pub fn names(&self) -> String {
-        self.keys.iter().map(|key| key.entry_point()).collect::<Vec<_>>().join(", ")
+        self.keys.iter().map(|key| key.kind.entry_point()).collect::<Vec<_>>().join(", ")
     }
 
     /// Takes part in making them until all are there. Errors: the first one's.

@@ -2,8 +2,9 @@
 //! The numbers that shaders share with Rust, by their names in WGSL: the fragment `constants` is printed from them, so
 //! that neither side can change alone. What each one means stands where Rust declares it.
 
+use super::choices::FROM_UNIFORM;
 use super::sizes;
-use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
+use super::variant::{MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
 use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_LEVEL};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};

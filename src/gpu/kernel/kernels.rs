@@ -54,7 +54,8 @@ impl Kernels {
     }
 
     /// The kernel's pipeline, made now unless it is there. Errors: as [`Device::compute_pipeline`].
-    pub fn get(&self, key: KernelKey) -> Result<Compiled> {
+    pub fn get(&self, key: impl Into<KernelKey>) -> Result<Compiled> {
+        let key = key.into();
         if !self.cache.has(key) {
             self.late.fetch_add(1, Ordering::Relaxed);
         }

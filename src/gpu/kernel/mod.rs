@@ -4,6 +4,7 @@
 
 pub(in crate::gpu) mod preprocess;
 pub(in crate::gpu) mod sizes;
+pub(in crate::gpu) mod choices;
 pub(in crate::gpu) mod variant;
 pub(in crate::gpu) mod constants;
 pub(in crate::gpu) mod slots;

@@ -2,7 +2,7 @@
 //! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
-use super::variant::{FilmVariant, OutputPlace, OutputPlaces, PixelTarget, RecordSource, StoredFormat};
+use super::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 use crate::scene::RayOutput;
 
@@ -98,11 +98,11 @@ impl Slot {
     }
 }
 
-impl FilmVariant {
+impl PixelTarget {
     /// The group of film/film.wgsl and what writes the pixels.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
-        let pixels = match self.target {
-            PixelTarget::Image(format) => Slot::TextureWrite(TextureKind {
+        let pixels = match self {
+            Self::Image(format) => Slot::TextureWrite(TextureKind {
                 format: match format {
                     StoredFormat::Rgba8 => SCREEN.format,
                     StoredFormat::Rgba16F => wgpu::TextureFormat::Rgba16Float,
@@ -111,23 +111,23 @@ impl FilmVariant {
                 },
                 dimension: SCREEN.dimension,
             }),
-            PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
-            PixelTarget::Light => Slot::TextureWrite(LIGHT),
+            Self::Packed | Self::Rows => Slot::Write,
+            Self::Light => Slot::TextureWrite(LIGHT),
         };
         vec![Slot::Uniform, pixels]
     }
 }
 
-impl RecordSource {
+impl RecordMaker {
     /// Group 1.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
         match self {
             Self::Traced => TRACED.map(Slot::Texture).into(),
-            Self::Schwarzschild { .. } => {
+            Self::Schwarzschild => {
                 let [swept, u, delay] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::Texture);
                 vec![Slot::Uniform, swept, u, delay]
             }
-            Self::Kerr { .. } => {
+            Self::Kerr | Self::KerrDeferred => {
                 let [curve, sky, crossings, flags] =
                     [LENS_ROWS, LENS_ROWS, LENS_COLUMNS, LENS_FLAGS].map(Slot::Texture);
                 vec![Slot::Uniform, curve, sky, crossings, flags, Slot::Write]

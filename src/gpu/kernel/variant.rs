@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are written. Plain data.
+//! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are written. Plain data,
+//! each field with the constant of WGSL that it is the value of (choices.rs).
 
+use super::choices::{Choice, FROM_UNIFORM, Values, Variant};
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
 use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, RayOutput, ToneMap, View};
@@ -12,40 +14,101 @@ pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
-/// Everything that decides how the tracing kernels are compiled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct TraceVariant {
-    pub method: MethodCode,
-    pub spinning: bool,
-    pub delay: bool,
-    pub step_limit: bool,
-    /// Whether pixels keep where on the disk a crossing is; given rays always do.
-    pub azimuth: bool,
-    /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none, or it is not asked.
-    pub matter: Option<MatterVariant>,
-    /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
-    pub projection: Option<Projection>,
+/// A type of choices.
+trait Made: Copy {
+    fn make(self, choice: Choice, values: &mut Values);
 }
 
-/// The matter with depth that tracing kernels are compiled for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct MatterVariant {
-    /// Bits of `SHAPE_*` and `MOTION_*`.
-    pub shapes: u32,
-    pub motions: u32,
-    /// Some of it is a blackbody, and some has a power law.
-    pub thermal: bool,
-    pub power_law: bool,
-    /// No effect on light is switched off.
-    pub all_effects: bool,
-    /// The view shows what there is, not light.
-    pub shows_depth: bool,
-    /// Some of it has structure.
-    pub structure: bool,
-    /// A volume with structure is all the matter that there is, in a picture with all effects.
-    pub alone: bool,
-    /// The host has things before it.
-    pub occluded: bool,
+macro_rules! made {
+    ($($ty:ty: $value:expr;)*) => {$(
+        impl Made for $ty {
+            fn make(self, choice: Choice, values: &mut Values) {
+                let value: fn($ty) -> u32 = $value;
+                values.make(choice, value(self));
+            }
+        }
+    )*};
+}
+
+made! {
+    u32: |value| value;
+    bool: |on| on.into();
+    MethodCode: |method| method.0;
+    Option<Projection>: |projection| projection.map_or(FROM_UNIFORM, |projection| projection as u32);
+    Option<PixelKind>: |pixels| pixels.map_or(FROM_UNIFORM, |pixels| pixels as u32);
+    Option<ToneMap>: |tone_map| tone_map.map_or(FROM_UNIFORM, |tone_map| tone_map as u32);
+    Option<ColourMap>: |colour_map| colour_map.map_or(FROM_UNIFORM, |colour_map| colour_map as u32);
+}
+
+impl Made for Option<MatterVariant> {
+    fn make(self, choice: Choice, values: &mut Values) {
+        values.make(choice, self.is_some().into());
+        self.unwrap_or_default().make(values);
+    }
+}
+
+/// A struct of choices: before each field its constant; after a semicolon, fields that choose other WGSL.
+macro_rules! variant {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident {
+            $($(#[$doc:meta])* $constant:ident $vis:vis $field:ident: $ty:ty,)*
+            $(; $($(#[$others:meta])* $v:vis $other:ident: $t:ty,)*)?
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub struct $name {
+            $($(#[$doc])* $vis $field: $ty,)*
+            $($($(#[$others])* $v $other: $t,)*)?
+        }
+
+        impl Variant for $name {
+            fn make(&self, values: &mut Values) {
+                $(self.$field.make(Choice::$constant, values);)*
+            }
+        }
+    };
+}
+
+variant! {
+    /// Everything that decides how the tracing kernels are compiled.
+    pub struct TraceVariant {
+        METHOD pub method: MethodCode,
+        SPINNING pub spinning: bool,
+        DELAY pub delay: bool,
+        STEP_LIMIT pub step_limit: bool,
+        /// Whether pixels keep where on the disk a crossing is; given rays always do.
+        AZIMUTH pub azimuth: bool,
+        /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none, or it is not
+        /// asked.
+        PARTS pub matter: Option<MatterVariant>,
+        /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
+        PROJECTION pub projection: Option<Projection>,
+    }
+}
+
+variant! {
+    /// The matter with depth that tracing kernels are compiled for.
+    #[derive(Default)]
+    pub struct MatterVariant {
+        /// Bits of `SHAPE_*` and `MOTION_*`.
+        SHAPES pub shapes: u32,
+        MOTIONS pub motions: u32,
+        /// Some of it is a blackbody, and some has a power law.
+        THERMAL pub thermal: bool,
+        POWER_LAW pub power_law: bool,
+        /// No effect on light is switched off.
+        ALL_EFFECTS pub all_effects: bool,
+        /// The view shows what there is, not light.
+        SHOWS_DEPTH pub shows_depth: bool,
+        /// Some of it has structure.
+        STRUCTURE pub structure: bool,
+        /// A volume with structure is all the matter that there is, in a picture with all effects.
+        ALONE pub alone: bool,
+        /// The host has things before it.
+        OCCLUDED pub occluded: bool,
+    }
 }
 
 /// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.
@@ -61,49 +124,52 @@ pub enum MotionCode {
     Outflow = 3,
 }
 
-/// Everything that decides how shading is compiled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ShadeVariant {
-    /// Light, not another view.
-    pub light: bool,
-    pub stars: bool,
-    pub milky_way: bool,
-    pub map: bool,
-    pub grid: bool,
-    /// A sampler filters maps.
-    pub map_sampler: bool,
-    /// No effect on light is switched off.
-    pub all_effects: bool,
-    /// Something shines in the equatorial plane.
-    pub plane: bool,
-    /// Each crossing hides what is behind it.
-    pub opaque: bool,
-    /// Whether crossings need their footprint.
-    pub footprints: bool,
-    /// Emitters with depth lie between crossings.
-    pub volumes: bool,
-    /// `None`: any, which the kernel asks while it runs.
-    pub projection: Option<Projection>,
-    /// Whether pixels with edges get more rays; values of views are not to be averaged.
-    pub refines: bool,
-    /// The disk is turbulent.
-    pub turbulent: bool,
-    /// The host has things before the camera.
-    pub occluded: bool,
+variant! {
+    /// Everything that decides how shading is compiled.
+    pub struct ShadeVariant {
+        /// Light, not another view.
+        SHOWS_LIGHT pub light: bool,
+        SHOWS_STARS pub stars: bool,
+        SHOWS_MILKY_WAY pub milky_way: bool,
+        SHOWS_MAP pub map: bool,
+        SHOWS_GRID pub grid: bool,
+        /// A sampler filters maps.
+        MAP_SAMPLER pub map_sampler: bool,
+        /// No effect on light is switched off.
+        ALL_EFFECTS pub all_effects: bool,
+        /// Something shines in the equatorial plane.
+        PLANE pub plane: bool,
+        /// Each crossing hides what is behind it.
+        OPAQUE pub opaque: bool,
+        /// Whether crossings need their footprint.
+        FOOTPRINTS pub footprints: bool,
+        /// Emitters with depth lie between crossings.
+        VOLUMES pub volumes: bool,
+        /// `None`: any, which the kernel asks while it runs.
+        PROJECTION pub projection: Option<Projection>,
+        /// Whether pixels with edges get more rays; values of views are not to be averaged.
+        REFINES pub refines: bool,
+        /// The disk is turbulent.
+        TURBULENT pub turbulent: bool,
+        /// The host has things before the camera.
+        OCCLUDED pub occluded: bool,
+    }
 }
 
-/// Everything that decides how development is compiled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct FilmVariant {
-    /// `None`: any, which the kernel asks while it runs.
-    pub(in crate::gpu) pixels: Option<PixelKind>,
-    /// Pixels show a view other than light in false colour.
-    pub(in crate::gpu) false_colour: bool,
-    /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
-    pub(in crate::gpu) tone_map: Option<ToneMap>,
-    /// `None`: any, which the kernel asks while it runs. `ColourMap::None` where it does not matter.
-    pub(in crate::gpu) colour_map: Option<ColourMap>,
-    pub(in crate::gpu) target: PixelTarget,
+variant! {
+    /// Everything that decides how development is compiled.
+    pub struct FilmVariant {
+        /// `None`: any, which the kernel asks while it runs.
+        PIXELS pub(in crate::gpu) pixels: Option<PixelKind>,
+        /// Pixels show a view other than light in false colour.
+        FALSE_COLOUR pub(in crate::gpu) false_colour: bool,
+        /// `None`: any, which the kernel asks while it runs.
+        TONE_MAP pub(in crate::gpu) tone_map: Option<ToneMap>,
+        /// `None`: any, which the kernel asks while it runs.
+        COLOUR_MAP pub(in crate::gpu) colour_map: Option<ColourMap>,
+        ;
+        pub(in crate::gpu) target: PixelTarget,
+    }
 }
 
 /// Pixel formats that one kernel serves: `PIXELS` of film/film.wgsl.
@@ -145,6 +211,14 @@ impl PixelTarget {
     pub fn is_image(self) -> bool {
         matches!(self, Self::Image(_))
     }
+
+    /// Threads of a workgroup of the kernels that write pixels there.
+    pub(in crate::gpu) fn group(self) -> [u32; 2] {
+        match self {
+            Self::Image(_) | Self::Packed | Self::Light => GROUP,
+            Self::Rows => ROWS_GROUP,
+        }
+    }
 }
 
 impl StoredFormat {
@@ -165,9 +239,6 @@ pub const SKY_SOURCE_HALF: u32 = 0;
 pub const SKY_SOURCE_FLOAT: u32 = 1;
 pub const SKY_SOURCE_LEVEL: u32 = 2;
 
-/// The value of a constant whose choice the kernel asks the uniform for while it runs.
-pub(in crate::gpu) const FROM_UNIFORM: u32 = u32::MAX;
-
 impl FilmVariant {
     /// For `film` in pixels of `format`.
     pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget) -> Self {
@@ -176,27 +247,20 @@ impl FilmVariant {
             PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
             PixelFormat::R32F => PixelKind::R32F,
         };
-        let shows_light = view == View::Light;
-        let (tone_map, colour_map) = match shows_light && format.is_developed() {
-            true => (film.tone_map, film.colour_map),
-            false => (ToneMap::None, ColourMap::None),
-        };
-        let (tone_map, colour_map) = (Some(tone_map), Some(colour_map));
-        Self { pixels: Some(pixels), false_colour: !shows_light, tone_map, colour_map, target }
+        let (tone_map, colour_map) = (Some(film.tone_map), Some(film.colour_map));
+        Self { pixels: Some(pixels), false_colour: view != View::Light, tone_map, colour_map, target }
     }
 
     /// The variant that serves every tone map and colour map, and, but in images, which have one kind of pixels, every
-    /// format. Views other than light have no tone map.
+    /// format.
     pub fn of_any(self) -> Self {
-        let pixels = self.pixels.filter(|_| self.target.is_image());
-        let tone_map = self.false_colour.then_some(ToneMap::None);
-        Self { pixels, tone_map, colour_map: self.false_colour.then_some(ColourMap::None), ..self }
+        Self { pixels: self.pixels.filter(|_| self.target.is_image()), tone_map: None, colour_map: None, ..self }
     }
 
     /// Whether hosts begin with such pixels, which have kernels of their own (`GpuTracer::set_up`): light in 8 bits by
     /// ACES, the default.
     pub fn is_usual(self) -> bool {
-        let plain = self.colour_map == Some(ColourMap::None);
+        let plain = self.colour_map == Some(ColourMap::None) && !self.false_colour;
         self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces) && plain
     }
 
@@ -208,10 +272,7 @@ impl FilmVariant {
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.
     pub(in crate::gpu) fn over(self, source: RecordSource) -> Self {
-        match source {
-            RecordSource::Kerr { deferred: true, .. } => self.scattered(),
-            _ => self,
-        }
+        if source.maker == RecordMaker::KerrDeferred { self.scattered() } else { self }
     }
 
     /// For kernels over pixels that make no rows.
@@ -221,25 +282,32 @@ impl FilmVariant {
             PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => self,
         }
     }
-
-    /// Threads of a workgroup of the kernels that write pixels.
-    pub(in crate::gpu) fn group(self) -> [u32; 2] {
-        match self.target {
-            PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => GROUP,
-            PixelTarget::Rows => ROWS_GROUP,
-        }
-    }
 }
 
-/// The maker of the ray records that a kernel reads.
+/// The fragment of shaders/ that makes the ray records which a kernel reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RecordSource {
+pub enum RecordMaker {
     /// traced/record.wgsl
     Traced,
     /// lens/schwarzschild_record.wgsl
-    Schwarzschild { delay: bool, moving: bool },
-    /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_deferred.wgsl
-    Kerr { delay: bool, pattern: bool, moving: bool, deferred: bool },
+    Schwarzschild,
+    /// lens/kerr_pixel.wgsl
+    Kerr,
+    /// lens/kerr_deferred.wgsl: of the pixels that lens/kerr_pixel.wgsl defers.
+    KerrDeferred,
+}
+
+variant! {
+    /// The source of the ray records that a kernel reads.
+    pub struct RecordSource {
+        DELAY pub delay: bool,
+        /// Whether crossings keep where and when their light left.
+        PATTERN pub pattern: bool,
+        /// The camera moves against the local frame.
+        MOVING pub moving: bool,
+        ;
+        pub maker: RecordMaker,
+    }
 }
 
 /// The place on the device that an output of frames is written into: one number a pixel, or four.
@@ -258,15 +326,6 @@ pub enum OutputPlace {
 /// A frame's outputs in their order with their places, for which a kernel of their own is made; none: all go into one
 /// buffer, packed, for the host, and the kernel learns from its uniform which they are.
 pub type OutputPlaces = [Option<(RayOutput, OutputPlace)>; MOST_OUTPUTS];
-
-/// How refine/refine.wgsl finds its samples of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct RefineVariant {
-    /// The source of the pixels' own records.
-    pub source: RecordSource,
-    /// How rays are traced that no table holds.
-    pub variant: TraceVariant,
-}
 
 /// `METHOD_*` of geodesic/integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

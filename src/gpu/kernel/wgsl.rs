@@ -3,18 +3,18 @@
 //! devices.
 
 use super::fragments::{join, join_with};
-use super::variant::{FilmVariant, OutputPlace, OutputPlaces, PixelTarget, RecordSource, StoredFormat};
+use super::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
 use crate::error::Result;
 use crate::scene::{RayOutput, RayOutputKind};
 
-impl RecordSource {
+impl RecordMaker {
     /// The fragment that makes the records of pixels.
     fn fragment(self) -> &'static str {
         match self {
             Self::Traced => "traced/record",
-            Self::Schwarzschild { .. } => "lens/schwarzschild_record",
-            Self::Kerr { deferred: false, .. } => "lens/kerr_pixel",
-            Self::Kerr { deferred: true, .. } => "lens/kerr_deferred",
+            Self::Schwarzschild => "lens/schwarzschild_record",
+            Self::Kerr => "lens/kerr_pixel",
+            Self::KerrDeferred => "lens/kerr_deferred",
         }
     }
 
@@ -22,15 +22,15 @@ impl RecordSource {
     fn sample_fragment(self) -> &'static str {
         match self {
             Self::Traced => "refine/traced",
-            Self::Schwarzschild { .. } => "lens/schwarzschild_record",
-            Self::Kerr { .. } => "refine/kerr",
+            Self::Schwarzschild => "lens/schwarzschild_record",
+            Self::Kerr | Self::KerrDeferred => "refine/kerr",
         }
     }
 
     /// The kernel that goes over the pixels: its entry point and its fragment.
     pub(in crate::gpu) fn driver(self, target: Option<PixelTarget>) -> (&'static str, &'static str) {
         match (self, target) {
-            (Self::Kerr { deferred: true, .. }, _) => ("each_deferred", "lens/each_deferred"),
+            (Self::KerrDeferred, _) => ("each_deferred", "lens/each_deferred"),
             (_, Some(PixelTarget::Rows)) => ("each_pixel", "film/each_pixel_rows"),
             _ => ("each_pixel", "records/each_pixel"),
         }
@@ -52,34 +52,34 @@ impl PixelTarget {
     }
 }
 
-pub fn shade_sample(source: RecordSource) -> Result<String> {
-    join(&[source.driver(None).1, source.fragment(), "shade/record", "shade/sample"])
+pub fn shade_sample(maker: RecordMaker) -> Result<String> {
+    join(&[maker.driver(None).1, maker.fragment(), "shade/record", "shade/sample"])
 }
 
-pub fn shade_only(source: RecordSource, film: FilmVariant) -> Result<String> {
-    let (_, driver) = source.driver(Some(film.target));
-    join(&[driver, source.fragment(), "shade/record", "shade/only", film.target.fragment()])
+pub fn shade_only(maker: RecordMaker, target: PixelTarget) -> Result<String> {
+    let (_, driver) = maker.driver(Some(target));
+    join(&[driver, maker.fragment(), "shade/record", "shade/only", target.fragment()])
 }
 
-/// `film`: of pixels with one sample.
-pub fn refine(source: RecordSource, film: Option<FilmVariant>) -> Result<String> {
-    let samples = source.sample_fragment();
-    match film {
-        Some(film) => join(&["refine/refine", samples, "shade/only", film.target.fragment()]),
+/// `target`: of pixels with one sample.
+pub fn refine(maker: RecordMaker, target: Option<PixelTarget>) -> Result<String> {
+    let samples = maker.sample_fragment();
+    match target {
+        Some(target) => join(&["refine/refine", samples, "shade/only", target.fragment()]),
         None => join(&["refine/refine", samples, "shade/sample"]),
     }
 }
 
-pub fn export(source: RecordSource) -> Result<String> {
-    join(&[source.driver(None).1, source.fragment(), "records/export"])
+pub fn export(maker: RecordMaker) -> Result<String> {
+    join(&[maker.driver(None).1, maker.fragment(), "records/export"])
 }
 
 pub fn sky_level(in_parts: bool) -> Result<String> {
     join(&["sky/pyramid", if in_parts { "sky/source_parts" } else { "sky/source_whole" }])
 }
 
-pub fn outputs(source: RecordSource, places: OutputPlaces) -> Result<String> {
-    let roots = [source.driver(None).1, source.fragment(), "shade/outputs"];
+pub fn outputs(maker: RecordMaker, places: OutputPlaces) -> Result<String> {
+    let roots = [maker.driver(None).1, maker.fragment(), "shade/outputs"];
     if places == OutputPlaces::default() {
         return join(&[&roots[..], &["shade/packed_outputs"]].concat());
     }
@@ -134,12 +134,12 @@ fn put_numbers(places: OutputPlaces) -> String {
     format!("{bindings}\n{head}{cases}        default: {{ }}\n    }}\n}}\n")
 }
 
-pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {
-    let driver = match film.target {
+pub fn develop(target: PixelTarget, glare: bool) -> Result<String> {
+    let driver = match target {
         PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => "film/develop",
         PixelTarget::Rows => "film/develop_rows",
     };
-    join(&[driver, if glare { "bloom/glare" } else { "film/summed" }, film.target.fragment()])
+    join(&[driver, if glare { "bloom/glare" } else { "film/summed" }, target.fragment()])
 }
 
 /// A kernel of one fragment and what that imports.
@@ -149,8 +149,7 @@ pub fn kernel(fragment: &str) -> Result<String> {
 
 /// Every shader of this tracer, joined as the device gets it: name and WGSL. Errors: as `join`.
 pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
-    let film = |target| FilmVariant { target, ..FilmVariant::of_light() };
-    let kerr = |deferred| RecordSource::Kerr { delay: true, pattern: true, moving: true, deferred };
+    use RecordMaker::{Kerr, KerrDeferred, Schwarzschild, Traced};
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced", "outputs, traced"],
         ["shade sample, spin-0 lens", "shade only, spin-0 lens", "export, spin-0 lens", "outputs, spin-0 lens"],
@@ -158,16 +157,11 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ["shade sample, Kerr deferred", "shade only, Kerr deferred", "export, Kerr deferred", "outputs, Kerr deferred"],
     ]
     .into_iter()
-    .zip([
-        RecordSource::Traced,
-        RecordSource::Schwarzschild { delay: true, moving: true },
-        kerr(false),
-        kerr(true),
-    ]);
+    .zip([Traced, Schwarzschild, Kerr, KerrDeferred]);
     let of_sources = sources.flat_map(|([in_sum, alone, exported, outputs_of], source)| {
         [
             (in_sum, shade_sample(source)),
-            (alone, shade_only(source, film(PixelTarget::Packed))),
+            (alone, shade_only(source, PixelTarget::Packed)),
             (exported, export(source)),
             (outputs_of, outputs(source, OutputPlaces::default())),
         ]
@@ -186,16 +180,16 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("media from blocks", kernel("traced/fill")),
         ("count", kernel("traced/count")),
         ("present", kernel("window/present")),
-        ("develop", develop(film(PixelTarget::Packed), false)),
-        ("develop for a window", develop(film(PixelTarget::SCREEN), false)),
-        ("develop for an image of RGBA16F", develop(film(PixelTarget::Image(StoredFormat::Rgba16F)), false)),
-        ("develop for an image of RGBA32F", develop(film(PixelTarget::Image(StoredFormat::Rgba32F)), false)),
-        ("develop for an image of R32F", develop(film(PixelTarget::Image(StoredFormat::R32F)), false)),
-        ("develop by rows", develop(film(PixelTarget::Rows), false)),
-        ("develop for bloom", develop(FilmVariant::of_light(), false)),
-        ("develop with glare", develop(film(PixelTarget::Packed), true)),
-        ("develop with glare for a window", develop(film(PixelTarget::SCREEN), true)),
-        ("develop with glare by rows", develop(film(PixelTarget::Rows), true)),
+        ("develop", develop(PixelTarget::Packed, false)),
+        ("develop for a window", develop(PixelTarget::SCREEN, false)),
+        ("develop for an image of RGBA16F", develop(PixelTarget::Image(StoredFormat::Rgba16F), false)),
+        ("develop for an image of RGBA32F", develop(PixelTarget::Image(StoredFormat::Rgba32F), false)),
+        ("develop for an image of R32F", develop(PixelTarget::Image(StoredFormat::R32F), false)),
+        ("develop by rows", develop(PixelTarget::Rows, false)),
+        ("develop for bloom", develop(PixelTarget::Light, false)),
+        ("develop with glare", develop(PixelTarget::Packed, true)),
+        ("develop with glare for a window", develop(PixelTarget::SCREEN, true)),
+        ("develop with glare by rows", develop(PixelTarget::Rows, true)),
         ("bloom, gather", kernel("bloom/gather")),
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
@@ -203,20 +197,17 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("sky map, level", sky_level(false)),
         ("sky map, level from parts", sky_level(true)),
         ("the host's distances", kernel("emit/occluder_rows")),
-        ("shade only for bloom", shade_only(kerr(false), FilmVariant::of_light())),
-        ("refine, traced", refine(RecordSource::Traced, Some(film(PixelTarget::Packed)))),
-        (
-            "refine, spin-0 lens",
-            refine(RecordSource::Schwarzschild { delay: true, moving: true }, Some(film(PixelTarget::Packed))),
-        ),
-        ("refine, Kerr lens", refine(kerr(true), Some(film(PixelTarget::Packed)))),
-        ("refine for a window", refine(kerr(true), Some(film(PixelTarget::SCREEN)))),
-        ("refine one of several samples", refine(kerr(true), None)),
-        ("shade only for a window", shade_only(kerr(false), film(PixelTarget::SCREEN))),
-        ("shade only by rows", shade_only(kerr(false), film(PixelTarget::Rows))),
+        ("shade only for bloom", shade_only(Kerr, PixelTarget::Light)),
+        ("refine, traced", refine(Traced, Some(PixelTarget::Packed))),
+        ("refine, spin-0 lens", refine(Schwarzschild, Some(PixelTarget::Packed))),
+        ("refine, Kerr lens", refine(KerrDeferred, Some(PixelTarget::Packed))),
+        ("refine for a window", refine(KerrDeferred, Some(PixelTarget::SCREEN))),
+        ("refine one of several samples", refine(KerrDeferred, None)),
+        ("shade only for a window", shade_only(Kerr, PixelTarget::SCREEN)),
+        ("shade only by rows", shade_only(Kerr, PixelTarget::Rows)),
         ("spin-0 lens, ends", kernel("lens/schwarzschild_ends")),
         ("spin-0 lens, columns", kernel("lens/schwarzschild_columns")),
-        ("outputs into targets", outputs(RecordSource::Traced, targets)),
+        ("outputs into targets", outputs(Traced, targets)),
         ("Kerr lens, nodes", kernel("lens/kerr_nodes")),
         ("Kerr lens, flags", kernel("lens/kerr_flags")),
     ];

@@ -8,7 +8,7 @@ use crate::emit::half::{BLOCK, STENCIL};
 use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::stage::{Stage, list_groups};
 use crate::gpu::kernel::variant::TraceVariant;
 
@@ -41,8 +41,7 @@ pub struct HalfStages {
 
 /// The keys of these kernels; `variant`: how rays are traced that matter is summed along.
 pub fn keys(variant: TraceVariant) -> [KernelKey; 3] {
-    let depth = variant.matter.is_some_and(|matter| matter.shows_depth);
-    [KernelKey::Blocks(variant), KernelKey::Fill(depth, variant.projection), KernelKey::Listed(variant)]
+    [KernelKind::Blocks, KernelKind::Fill, KernelKind::Listed].map(|kind| KernelKey::new(kind, &[&variant]))
 }
 
 /// The most blocks along a side of a tile of so many pixels, wherever it begins.

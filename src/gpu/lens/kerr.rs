@@ -7,8 +7,9 @@ use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::choices::Choice;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::sizes::{KERR_COLUMNS, KERR_PER_OCTAVE};
 use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
 use crate::gpu::kernel::stage::{self, Stage};
@@ -165,16 +166,13 @@ impl KerrTables {
         let texture = wgpu::BindingResource::TextureView;
         let lens = resources.uniform.as_entire_binding();
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
+        let choices = [(Choice::DELAY, contents.delay.into()), (Choice::PATTERN, contents.pattern.into())];
         let trace_nodes = match traced {
             true => None,
-            false => Some(
-                kernels
-                    .get(KernelKey::KerrNodes { delay: contents.delay, pattern: contents.pattern })?
-                    .stage(device, &[&shared])?,
-            ),
+            false => Some(kernels.get(KernelKey::new(KernelKind::KerrNodes, &[&choices]))?.stage(device, &[&shared])?),
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
-        let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: contents.pattern })?.stage(device, &[&all])?;
+        let flag_cells = kernels.get(KernelKey::new(KernelKind::KerrFlags, &[&choices]))?.stage(device, &[&all])?;
         Ok(Some(KerrStages { trace_nodes, flag_cells, size: [KERR_COLUMNS, used[0] + used[1]] }))
     }
 

@@ -10,10 +10,10 @@ use crate::error::Result;
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::sizes::COUNT_RUN;
 use crate::gpu::kernel::stage::Stage;
-use crate::gpu::kernel::variant::{RecordSource, TraceVariant};
+use crate::gpu::kernel::variant::{RecordMaker, RecordSource, TraceVariant};
 use crate::physics::observer::LocalFrame;
 
 /// Bytes of a texel of the record textures.
@@ -58,13 +58,13 @@ impl RecordSetup {
 
     /// Bytes of a tile's pixel on the device.
     pub fn bytes_per_pixel(&self) -> u64 {
-        match self.source {
-            RecordSource::Traced => {
+        match self.source.maker {
+            RecordMaker::Traced => {
                 let texels = TEXEL * (2 + u64::from(self.layers()));
                 if self.half { texels + texels.div_ceil(4) + HalfBlocks::BYTES_PER_PIXEL } else { texels }
             }
-            RecordSource::Schwarzschild { .. } => 0,
-            RecordSource::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
+            RecordMaker::Schwarzschild => 0,
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => KerrTables::BYTES_PER_PIXEL,
         }
     }
 
@@ -75,7 +75,7 @@ impl RecordSetup {
 
     /// The kernels that make traced records.
     pub fn trace_keys(&self) -> Vec<KernelKey> {
-        let mut keys = vec![KernelKey::Pixels(self.pixel_variant()), KernelKey::Count];
+        let mut keys = vec![KernelKey::new(KernelKind::Pixels, &[&self.pixel_variant()]), KernelKind::Count.into()];
         if self.half {
             keys.extend(half::keys(self.variant));
         }
@@ -84,36 +84,31 @@ impl RecordSetup {
 
     /// Whether both are looked up in the same tables.
     pub fn shares_tables(&self, other: &Self) -> bool {
-        use RecordSource::{Kerr, Schwarzschild};
         self.observer == other.observer
-            && match (self.source, other.source) {
-                (Schwarzschild { delay, .. }, Schwarzschild { delay: others, .. }) => delay == others,
-                (Kerr { .. }, Kerr { .. }) => self.contents == other.contents,
+            && match (self.source.maker, other.source.maker) {
+                (RecordMaker::Schwarzschild, RecordMaker::Schwarzschild) => self.source.delay == other.source.delay,
+                (RecordMaker::Kerr, RecordMaker::Kerr) => self.contents == other.contents,
                 _ => false,
             }
     }
 
     /// The source of the records of those pixels that this one leaves pending.
     pub fn deferred_source(&self) -> Option<RecordSource> {
-        match self.source {
-            RecordSource::Kerr { delay, pattern, moving, .. } => {
-                Some(RecordSource::Kerr { delay, pattern, moving, deferred: true })
-            }
-            _ => None,
-        }
+        let deferred = RecordSource { maker: RecordMaker::KerrDeferred, ..self.source };
+        (self.source.maker == RecordMaker::Kerr).then_some(deferred)
     }
 }
 
 impl RecordStore {
     /// Makes room for a tile.
     pub fn prepare(&mut self, device: &Device, record_setup: &RecordSetup, tile: [u32; 2]) -> Result<()> {
-        match record_setup.source {
-            RecordSource::Traced => {
+        match record_setup.source.maker {
+            RecordMaker::Traced => {
                 self.traced.prepare(device, tile.map(|side| side + 2), record_setup.layers())?;
                 if record_setup.half { self.half.prepare(device, tile, record_setup.layers()) } else { Ok(()) }
             }
-            RecordSource::Schwarzschild { .. } => Ok(()),
-            RecordSource::Kerr { .. } => self.kerr.prepare(device, tile),
+            RecordMaker::Schwarzschild => Ok(()),
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.prepare(device, tile),
         }
     }
 
@@ -126,8 +121,8 @@ impl RecordStore {
         shared: &Shared<'_>,
     ) -> Result<RecordStages> {
         let frame = shared.frame.clone();
-        Ok(match record_setup.source {
-            RecordSource::Traced => {
+        Ok(match record_setup.source.maker {
+            RecordMaker::Traced => {
                 let pixels = self.traced.resources()?;
                 let half = || self.half.stages(device, kernels, record_setup.variant, &pixels, shared);
                 let half = if record_setup.half { Some(half()?) } else { None };
@@ -135,17 +130,17 @@ impl RecordStore {
                 RecordStages::Traced(TraceStages { half, ..trace })
             }
             // Only lenses of one kind are kept: both together could take half as much again.
-            RecordSource::Schwarzschild { delay, .. } => {
+            RecordMaker::Schwarzschild => {
                 self.kerr.release();
                 RecordStages::Schwarzschild(self.schwarzschild.update(
                     device,
                     kernels,
                     &record_setup.observer,
-                    delay,
+                    record_setup.source.delay,
                     frame,
                 )?)
             }
-            RecordSource::Kerr { .. } => {
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => {
                 self.schwarzschild = SchwarzschildTables::default();
                 RecordStages::Kerr(self.kerr.update(
                     device,
@@ -160,10 +155,10 @@ impl RecordStore {
 
     /// Group 1 of a kernel that reads records.
     pub fn group(&self, source: RecordSource) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        match source {
-            RecordSource::Traced => self.traced.group(),
-            RecordSource::Schwarzschild { .. } => self.schwarzschild.group(),
-            RecordSource::Kerr { .. } => self.kerr.group(),
+        match source.maker {
+            RecordMaker::Traced => self.traced.group(),
+            RecordMaker::Schwarzschild => self.schwarzschild.group(),
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.group(),
         }
     }
 
@@ -175,14 +170,14 @@ impl RecordStore {
         step_sum: &'a Buffer,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Option<&'a Buffer> {
-        match source {
-            RecordSource::Traced => {
+        match source.maker {
+            RecordMaker::Traced => {
                 encoder.clear_buffer(step_sum, 0, None);
                 self.half.reset(encoder);
                 Some(step_sum)
             }
-            RecordSource::Schwarzschild { .. } => None,
-            RecordSource::Kerr { .. } => {
+            RecordMaker::Schwarzschild => None,
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => {
                 self.kerr.reset(encoder);
                 self.kerr.deferred()
             }
@@ -235,8 +230,10 @@ fn trace_stages(
     let [_, meta, _] = textures.clone();
     let Shared { pass, step_sum, .. } = shared.clone();
     Ok(TraceStages {
-        trace: kernels.get(KernelKey::Pixels(variant))?.stage(device, &[&pixel_group(textures, shared)])?,
-        count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
+        trace: kernels
+            .get(KernelKey::new(KernelKind::Pixels, &[&variant]))?
+            .stage(device, &[&pixel_group(textures, shared)])?,
+        count: kernels.get(KernelKind::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
         half: None,
     })
 }

@@ -6,8 +6,9 @@ use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::choices::Choice;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::sizes::{SCHWARZSCHILD_INTERVALS, SCHWARZSCHILD_OCTAVES, SCHWARZSCHILD_PER_OCTAVE};
 use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
 use crate::gpu::kernel::stage::Stage;
@@ -123,10 +124,10 @@ impl SchwarzschildTables {
         let texture = wgpu::BindingResource::TextureView;
         let lens = resources.uniform.as_entire_binding();
         let find_ends = kernels
-            .get(KernelKey::SchwarzschildEnds)?
+            .get(KernelKind::SchwarzschildEnds)?
             .stage(device, &[&[frame_uniform.clone(), lens.clone(), texture(&ends)]])?;
         let fill_columns = kernels
-            .get(KernelKey::SchwarzschildColumns { delay })?
+            .get(KernelKey::new(KernelKind::SchwarzschildColumns, &[&[(Choice::DELAY, delay.into())]]))?
             .stage(device, &[&[frame_uniform, lens, texture(&ends), texture(&swept), texture(&u), texture(&delays)]])?;
         self.kept.put(key, resources);
         Ok(Some(SchwarzschildStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))

@@ -4,7 +4,7 @@
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::film::{FilmParams, colour_map, develop, dither, false_colour, limited, srgb_encode, tone_map};
-use crate::gpu::kernel::variant::FROM_UNIFORM;
+use crate::gpu::kernel::choices::FROM_UNIFORM;
 use crate::image::PixelFormat;
 use crate::image::file::srgb_to_linear;
 use crate::scene::{ColourMap, Film, ToneMap, View};

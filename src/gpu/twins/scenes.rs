@@ -47,7 +47,7 @@ impl Kind {
     /// Whether rays of it spin, and by which clock: the pipeline constants.
     pub fn constants(self) -> [(&'static str, f64); 3] {
         let spinning = f64::from(u8::from(matches!(self, Self::Spinning)));
-        [("SPINNING", spinning), ("DELAY", 1.0), ("PROJECTION", f64::from(crate::gpu::kernel::variant::FROM_UNIFORM))]
+        [("SPINNING", spinning), ("DELAY", 1.0), ("PROJECTION", f64::from(crate::gpu::kernel::choices::FROM_UNIFORM))]
     }
 
     /// Pushes the number of one of its scenes.

@@ -12,7 +12,7 @@ use crate::gpu::frame::resources::bloom_textures::{
     BeamResources, BeamUniform, BloomBuffers, BloomResources, LevelUniform, view,
 };
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::KernelKind;
 use crate::gpu::kernel::stage::Stage;
 use crate::tracer::Tile;
 
@@ -53,7 +53,7 @@ impl BloomBuffers {
             let all = resources.gathered.get(index).zip(above).zip(resources.spread.get(index));
             let ((finer, coarser), spread) = all.ok_or_else(|| Error::internal("bloom without its grids"))?;
             let group = [resources.level(), view(finer), view(coarser), resources.smooth(), view(spread)];
-            upsample.push(kernels.get(KernelKey::Upsample)?.stage(device, &[&group])?);
+            upsample.push(kernels.get(KernelKind::Upsample)?.stage(device, &[&group])?);
         }
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
         let beam = bloom.beam.as_ref().zip(resources.beam.as_ref());
@@ -72,7 +72,7 @@ impl BloomResources {
     ) -> Result<BeamStages> {
         let spread = if level < self.spread.len() { self.spread.get(level) } else { self.gathered.get(level) };
         let cells = spread.ok_or_else(|| Error::internal("a beam without its grid"))?;
-        let kernel = kernels.get(KernelKey::Beam)?;
+        let kernel = kernels.get(KernelKind::Beam)?;
         let uniform = || {
             wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: made.passes.buffer(),

@@ -17,7 +17,7 @@ use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::frame::uniforms::outputs::OutputsUniform;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordSource};
+use crate::gpu::kernel::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, RecordSource};
 use crate::gpu::lens::records::{RecordStages, RecordStore};
 use crate::gpu::lens::traced::Shared;
 use crate::scene::{RayOutput, Scene};
@@ -125,7 +125,7 @@ impl Place {
 fn check_bound(device: &Device, places: &[Place], source: RecordSource) -> Result<()> {
     let limits = device.limits();
     let images = places.iter().filter(|place| matches!(place, Place::Image(_))).count() as u32;
-    let listed = u32::from(matches!(source, RecordSource::Kerr { .. }));
+    let listed = u32::from(matches!(source.maker, RecordMaker::Kerr | RecordMaker::KerrDeferred));
     let found = [
         ("IMAGE", images, limits.max_storage_textures_per_shader_stage),
         ("BUFFER", places.len() as u32 - images, limits.max_storage_buffers_per_shader_stage.saturating_sub(listed)),
@@ -161,7 +161,8 @@ impl BesideSetup {
             *kind = Some((*output, found));
         }
         check_bound(device, &places, setup.record_setup.source)?;
-        let (own, looked_up) = (&setup.record_setup, |setup: &Setup| setup.record_setup.source != RecordSource::Traced);
+        let (own, looked_up) =
+            (&setup.record_setup, |setup: &Setup| setup.record_setup.source.maker != RecordMaker::Traced);
         let reads_again = picture.is_none_or(|picture| {
             let stays = picture.samples == 1 || looked_up(picture);
             stays && *own == picture.record_setup && setup.uniform.is_same(&picture.uniform)
@@ -322,7 +323,7 @@ impl Beside {
         step_sum: &'a crate::gpu::device::buffer::Buffer,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Option<&'a crate::gpu::device::buffer::Buffer> {
-        if self.records.is_none() && self.source == RecordSource::Traced {
+        if self.records.is_none() && self.source.maker == RecordMaker::Traced {
             return None;
         }
         let store = if self.own_tables { &own.frame.record_store } else { buffers };

@@ -171,7 +171,7 @@ impl FrameBuffers {
             })
         };
         let writer = match variants.several_samples {
-            true => kernels.get(KernelKey::Develop(variants.film, None))?,
+            true => kernels.get(KernelKey::develop(variants.film, None))?,
             false => kernels.get(KernelKey::shade_only(setup.record_setup.source, variants.shade, variants.film))?,
         };
         let shading = if variants.several_samples {
@@ -207,7 +207,7 @@ impl FrameBuffers {
         };
         let (output, glare) = match (&setup.bloom, variants.developed) {
             (Some(bloom), Some(developed)) => {
-                let develops = kernels.get(KernelKey::Develop(developed, Some(bloom.factor)))?;
+                let develops = kernels.get(KernelKey::develop(developed, Some(bloom.factor)))?;
                 let glare = GlareStages {
                     bloom: self.bloom.stages(device, kernels, bloom)?,
                     develop: develops.stage(device, &[slice::from_ref(&pass), &self.bloom.group(bloom)?])?,

@@ -7,7 +7,7 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::stage::{Stage, list_groups};
-use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
+use crate::gpu::kernel::variant::{FilmVariant, RecordSource, ShadeVariant, TraceVariant};
 
 /// Pixels of a tile for each workgroup of a software driver where matter is summed (`list_groups`): edges run through
 /// 1 or 2 % of them, and a workgroup takes two or more at a time.
@@ -31,8 +31,7 @@ impl RefineStage {
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {
-        let stage =
-            kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
+        let stage = kernels.get(KernelKey::refine((source, variant), shade, film))?.stage(device, shared)?;
         Ok(Self { stage, software, summed: variant.matter.map(|_| PIXELS_PER_GROUP) })
     }
 

@@ -10,7 +10,7 @@ use crate::film::bloom::Bloom;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::gpu::frame::uniforms::matter::matter_variant;
-use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordSource, ShadeVariant, TraceVariant};
+use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordMaker, RecordSource, ShadeVariant, TraceVariant};
 use crate::gpu::lens::kerr::KerrContents;
 use crate::gpu::lens::records::RecordSetup;
 use crate::physics::trace::Settings;
@@ -110,10 +110,10 @@ impl Planner<'_> {
         let pattern = emitters.needs().places;
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let source = match scene.lensing(&observer, pixels, KerrThreshold::GPU) {
-            Lensing::Traced => RecordSource::Traced,
-            Lensing::Schwarzschild => RecordSource::Schwarzschild { delay, moving },
-            Lensing::Kerr => RecordSource::Kerr { delay, pattern, moving, deferred: false },
+        let maker = match scene.lensing(&observer, pixels, KerrThreshold::GPU) {
+            Lensing::Traced => RecordMaker::Traced,
+            Lensing::Schwarzschild => RecordMaker::Schwarzschild,
+            Lensing::Kerr => RecordMaker::Kerr,
         };
         let hidden = settings.opaque_u.is_some() && emitters.hides_all();
         let plane_u = emitters.plane_u();
@@ -121,14 +121,14 @@ impl Planner<'_> {
         let crossings = if hidden || plane_u.is_none() { 1 } else { settings.max_crossings as u32 };
         let inside = observer.r <= 2.0;
         RecordSetup {
-            source,
+            source: RecordSource { delay, pattern, moving, maker },
             variant: TraceVariant {
                 azimuth: pattern,
                 matter: matter_variant(&emitters.volumes, scene),
                 projection,
                 ..variant(scene, settings, inside)
             },
-            half: source == RecordSource::Traced && scene.half_resolution().is_some(),
+            half: maker == RecordMaker::Traced && scene.half_resolution().is_some(),
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             observer,

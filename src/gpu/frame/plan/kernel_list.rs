@@ -4,20 +4,18 @@
 
 use super::setup::Setup;
 use crate::film::bloom::Bloom;
-use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{OutputPlaces, RecordSource, RefineVariant};
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
+use crate::gpu::kernel::variant::{OutputPlaces, RecordMaker};
 
 impl Setup {
     /// The kernels that make records, or the tables that they are looked up in.
     pub(in crate::gpu) fn record_kernels(&self) -> Vec<KernelKey> {
-        match self.record_setup.source {
-            RecordSource::Traced => self.record_setup.trace_keys(),
-            RecordSource::Schwarzschild { delay, .. } => {
-                vec![KernelKey::SchwarzschildEnds, KernelKey::SchwarzschildColumns { delay }]
-            }
-            RecordSource::Kerr { delay, pattern, .. } => {
-                vec![KernelKey::KerrNodes { delay, pattern }, KernelKey::KerrFlags { pattern }]
-            }
+        let source = self.record_setup.source;
+        let tables = |kinds: [KernelKind; 2]| kinds.map(|kind| KernelKey::new(kind, &[&source])).to_vec();
+        match source.maker {
+            RecordMaker::Traced => self.record_setup.trace_keys(),
+            RecordMaker::Schwarzschild => tables([KernelKind::SchwarzschildEnds, KernelKind::SchwarzschildColumns]),
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => tables([KernelKind::KerrNodes, KernelKind::KerrFlags]),
         }
     }
 
@@ -34,16 +32,15 @@ impl Setup {
         keys.push(shade(record_setup.source));
         keys.extend(deferred.map(shade));
         if variants.shade.refines {
-            let refined =
-                RefineVariant { source: deferred.unwrap_or(record_setup.source), variant: record_setup.variant };
-            keys.push(KernelKey::refine(refined, variants.shade, film));
+            let traced = (deferred.unwrap_or(record_setup.source), record_setup.variant);
+            keys.push(KernelKey::refine(traced, variants.shade, film));
         }
         if film.is_none() {
-            keys.push(KernelKey::Develop(variants.film, None));
+            keys.push(KernelKey::develop(variants.film, None));
         }
         if let (Some(bloom), Some(developed)) = (&self.bloom, variants.developed) {
             keys.extend(bloom_kernels(bloom));
-            keys.push(KernelKey::Develop(developed, Some(bloom.factor)));
+            keys.push(KernelKey::develop(developed, Some(bloom.factor)));
         }
         keys
     }
@@ -63,15 +60,15 @@ impl Setup {
 fn bloom_kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
     let count = bloom.levels.len();
     let gather = (0..count).map(|index| gather_key(bloom, index));
-    let beam = bloom.beam.as_ref().map(|_| KernelKey::Beam);
-    gather.chain((1 < count).then_some(KernelKey::Upsample)).chain(beam)
+    let beam = bloom.beam.as_ref().map(|_| KernelKind::Beam.into());
+    gather.chain((1 < count).then(|| KernelKind::Upsample.into())).chain(beam)
 }
 
 /// The kernel that gathers light into the grid of a level.
 pub fn gather_key(bloom: &Bloom, level: usize) -> KernelKey {
     match (level, bloom.factor) {
-        (0, 2) => KernelKey::GatherBase,
-        (0, factor) => KernelKey::Gather(factor, false),
-        _ => KernelKey::Gather(2, true),
+        (0, 2) => KernelKind::GatherBase.into(),
+        (0, factor) => KernelKey::gather(factor, false),
+        _ => KernelKey::gather(2, true),
     }
 }

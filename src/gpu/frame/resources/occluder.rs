@@ -12,7 +12,7 @@ use crate::gpu::device::target::{GpuTarget, TargetRead, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::KernelKind;
 use crate::gpu::kernel::slots::OCCLUDER;
 use crate::gpu::kernel::stage::Stage;
 use crate::image::PixelFormat;
@@ -195,7 +195,7 @@ impl OccluderTexture {
         let way = match copied_row(&from.shape) {
             Some(row) => Way::Copy(buffer.clone(), row),
             None => {
-                let kernel = kernels.get(KernelKey::OccluderRows)?;
+                let kernel = kernels.get(KernelKind::OccluderRows)?;
                 let uniforms = self.taken.as_ref().ok_or_else(missing)?.buffer();
                 let size = NonZeroU64::new(size_of::<OccluderRowsUniform>() as u64);
                 let stages = bands_of(device, &from.shape)?.into_iter().map(|band| {

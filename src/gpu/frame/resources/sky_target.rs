@@ -12,7 +12,7 @@ use crate::gpu::device::external::{HOST_POINTER, TargetOrigin, TargetShape};
 use crate::gpu::device::target::{GpuTarget, TargetRead, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
-use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::sizes::SKY_PARTS;
 use crate::gpu::kernel::slots::SKY_MAP;
 use crate::gpu::kernel::stage::Stage;
@@ -284,8 +284,8 @@ impl SkyTarget {
     /// Errors: SURFACE_LOST for a target that is gone.
     pub fn fetch(&self, device: &Device, kernels: &Kernels, picture: &SkyPicture) -> Result<SkyFetch> {
         let target = target_of(picture)?;
-        let first = kernels.get(KernelKey::SkyLevel(self.plan.parts.is_some()))?;
-        let others = kernels.get(KernelKey::SkyLevel(false))?;
+        let first = kernels.get(KernelKind::SkyLevel(self.plan.parts.is_some()))?;
+        let others = kernels.get(KernelKind::SkyLevel(false))?;
         let level = || {
             wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: self.uniforms.buffer(),
@@ -340,7 +340,8 @@ pub fn level_kernels(device: &Device, picture: &SkyPicture) -> ArrayVec<KernelKe
     let reach = Reach::of(device);
     let source = target_of(picture).map(|target| source_rows(&target.shape));
     let in_parts = picture.cube && source.is_ok_and(|source| source.window(0..source.count, &reach).is_none());
-    [KernelKey::SkyLevel(false), KernelKey::SkyLevel(true)].into_iter().take(1 + usize::from(in_parts)).collect()
+    let kinds = [KernelKind::SkyLevel(false), KernelKind::SkyLevel(true)];
+    kinds.into_iter().take(1 + usize::from(in_parts)).map(KernelKey::from).collect()
 }
 
 /// The target of a picture. Errors: SURFACE_LOST for one that is gone.
