@@ -59,14 +59,14 @@
  *   spherical coordinates there (on the axis e_th = x, e_ph = y). Its components are those along the orthonormal frame
  *   of the local static observer (the ZAMO when the hole spins). A direction may have any non-zero length, and is
  *   normalised; a velocity is taken as it is. A moving camera's axes are that frame boosted without rotation. Inside a
- *   spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a spinning hole's horizon
- *   everything is BHR_ERROR_UNSUPPORTED.
+ *   spin-0 horizon the frame is that of the observer falling from rest at infinity. Inside a spinning hole's horizon
+ *   there is none: a camera there is BHR_ERROR_UNSUPPORTED, a ray from there BHR_FATE_INVALID.
  *
  * Errors
- *   Every call that can fail returns a BhrStatus; bhr_error_message says to the thread that called what was wrong, with
+ *   Every call that can fail returns a BhrStatus; bhr_error_message tells the thread that called what was wrong, with
  *   the value and the limit. bhr_context_error_message and bhr_job_error_message have the last one of a context or a
  *   job. A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters
- *   check their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
+ *   check their own argument only; impossible combinations (such as a static camera inside the horizon) are
  *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
  *
  *   Below, errors are named without BHR_ERROR_. Not named each time are INVALID_ARGUMENT for NULL, a wrong struct_size
@@ -83,17 +83,19 @@
  *   docs/abi.md has the rules at length.
  *
  * Structs
- *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with; smaller than in
- *   the library's first version is INVALID_ARGUMENT. A field that a program's struct does not reach is not written as
- *   output, and as input means what the library did without it. A struct larger than this library's is accepted as
- *   input when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init
- *   functions clear struct_size bytes and fill in the defaults: of BhrDisk and BhrFilm those of the release whose
- *   struct has that size. BHR_INIT(camera), at this header's end, does so in one line. Structs and arrays need no
- *   alignment; pixels do (BhrImage).
+ *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with. The caller sets
+ *   it before every call that reads or fills the struct, getters too; less than in the library's first version is
+ *   INVALID_ARGUMENT. A field that a program's struct does not reach is not written as output, and as input means what
+ *   the library did without it. A struct larger than this library's is accepted as input when the rest of it is zero,
+ *   and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes, set
+ *   struct_size, and fill in the defaults: of BhrDisk and BhrFilm those of the release whose struct has that size.
+ *   BHR_INIT(camera), at this header's end, does so in one line. Structs and arrays need no alignment; pixels do
+ *   (BhrImage).
  *
  * Pointers
  *   A pointer is NULL only where this header says that it may be. Everything that is passed in is copied before the
- *   call returns; windows and pixels stay the host's own.
+ *   call returns; windows and pixels stay the host's own. Strings are UTF-8 and end with a NUL; a path may hold any
+ *   other bytes on Unix.
  *
  * Threads and callbacks
  *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other. (macOS:
@@ -267,8 +269,8 @@ typedef int32_t BhrWindowKind;
 #define BHR_WINDOW_ANDROID 8     /**< Android: handle = ANativeWindow *. */
 
 /** A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
- * Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
- * raw-window-handle crate. */
+ * Begin with bhr_window_init, or with all bytes 0 and struct_size, then set kind and what the kind names. Handles
+ * are those of the raw-window-handle crate. */
 typedef struct BhrWindow {
     uint32_t struct_size; /**< sizeof(BhrWindow). */
     BhrWindowKind kind;   /**< BHR_WINDOW_*. */
@@ -337,8 +339,8 @@ BHR_NODISCARD BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapte
  * UNSUPPORTED on a device of the host's (bhr_context_create_vulkan). */
 BHR_NODISCARD BhrStatus bhr_context_recover(BhrContext *context);
 
-/** Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was
- * on, into buffer: at most size - 1 bytes, cut between characters, and a NUL; nothing when buffer is NULL or size
+/** Copies the message of the last call that failed on this context or on one of its surfaces, on whichever thread,
+ * into buffer: at most size - 1 bytes, cut between characters, and a NUL; nothing when buffer is NULL or size
  * is 0. Returns the length of the whole message in bytes without its NUL, less than 10,000; 0 when no call has
  * failed, and for a NULL context. It waits for no other call. Where other threads make failing calls meanwhile, the
  * message may be one of theirs. For hosts whose calls move between threads: docs/errors.md. @since 0.2.0 */
@@ -385,18 +387,18 @@ typedef struct BhrHoleInfo {
 /** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_hole_info_init(BhrHoleInfo *info, size_t struct_size);
 
-/** Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
- * NaN. */
+/** Fills in info for the hole and the camera as they are set; where the camera's motion is not possible, its numbers
+ * are NaN. */
 BHR_NODISCARD BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
 
 /** Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph) of
- * signature - + + +.
- * Errors: INVALID_ARGUMENT at the centre and on the horizon. */
+ * signature - + + +, inside horizons too.
+ * Errors: INVALID_ARGUMENT at the centre and on a horizon. */
 BHR_NODISCARD BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
 
 /** Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in
- * Boyer-Lindquist (t, r, th, ph).
- * Errors: INVALID_ARGUMENT at the centre, on the horizon and on the axis. */
+ * Boyer-Lindquist (t, r, th, ph), inside horizons too.
+ * Errors: INVALID_ARGUMENT at the centre, on a horizon and on the axis. */
 BHR_NODISCARD BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
 
 /* ---- the camera: an observer with a lens ---- */
@@ -500,19 +502,20 @@ BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *cam
 /** Reads the camera as it is set. */
 BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
-/** Moves a camera along its own world line about the context's hole by proper_time (scene lengths): a STATIC one
- * stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
- * it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time that went by:
- * add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless (docs/cameras.md).
- * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible; UNSUPPORTED for
- * VELOCITY. */
+/** Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
+ * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
+ * stays where it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time
+ * that went by: add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless
+ * (docs/cameras.md).
+ * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
+ * ends in the centre or, with spin, at the horizon; UNSUPPORTED for VELOCITY. */
 BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context, BhrCamera *camera, double proper_time,
                                            double *out_coordinate_time);
 
 /* ---- cameras as matrices ---- */
 
 /** Matrices lie in memory row by row, else column by column. For matrices that multiply row vectors (DirectXMath,
- * Unreal) it is the other way round: those that lie there row by row are given without it. */
+ * Unreal) it is the other way round: those that lie in memory row by row are given without this flag. */
 #define BHR_MATRIX_ROW_MAJOR 1u
 
 /** Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal. */
@@ -529,7 +532,7 @@ BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context, BhrCamera 
 #define BHR_MATRIX_FORWARD_Z 16u
 
 /** Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
- * host's matrices; the rest of it, its motion for one, stays. Touches no context. On failure the camera stays as it
+ * host's matrices; the rest of it, such as its motion, stays. Touches no context. On failure the camera stays as it
  * was.
  *
  * view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
@@ -656,27 +659,27 @@ typedef int32_t BhrFlow;
 
 /** Matter with depth, which shines and absorbs by the equation of transfer; nothing is scattered. Radii are in units
  * of M, other lengths those that the matter itself measures. Thermal matter absorbs alike at all frequencies, and
- * without absorption does not shine. A power law sends j = n (nu / nu_camera)^-spectral_index per M and absorbs
- * absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being the frequency that the matter measures: a
- * picture shows its light at the one frequency nu_camera, in the colour tint. No matter is inside the horizon.
- * Fields that shape and flow do not use are checked all the same. docs/matter.md. @since 0.2.0 */
+ * without absorption does not shine. A power law emits j = n (nu / nu_camera)^-spectral_index per M, and its
+ * absorption per M is absorption n (nu / nu_camera)^-(2.5 + spectral_index), nu being the frequency that the matter
+ * measures: a picture shows its light at the one frequency nu_camera, in the colour tint. No matter is inside the
+ * horizon. Fields that shape and flow do not use are checked all the same. docs/matter.md. @since 0.2.0 */
 typedef struct BhrVolume {
     uint32_t struct_size; /**< sizeof(BhrVolume). */
     uint32_t flags;       /**< Any of BHR_VOLUME_RETROGRADE | BHR_VOLUME_POWER_LAW. Default 0. */
     BhrVolumeShape shape; /**< BHR_VOLUME_DISK (default), _TORUS, _HALO, _JET. */
     BhrFlow flow;         /**< BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW. */
-    /** In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: the place where matter is at rest. Default 0: the ISCO
-     * of matter that moves as flags say. */
+    /** In M, 1e-6 .. 1e4, or 0 (default): the ISCO of matter that moves as flags say. DISK, JET: the inner edge;
+     * OUTFLOW: the place where matter is at rest. */
     double inner_radius;
     /** In M, greater than inner_radius, to 1e4. There is nothing beyond it, whatever the shape, and nothing at all
-     * of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, the ISCO among them. Default 17. */
+     * of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, be that the ISCO. Default 17. */
     double outer_radius;
     double radius; /**< In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8. */
     double width;  /**< In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2. */
     /** 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick
      * one. */
     double thickness;
-    double opening;    /**< JET: radians, 0.01 .. 1.5. Default 0.3. */
+    double opening;    /**< JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5. Default 0.3. */
     double slope;      /**< DISK, JET: 0 .. 4. Default 0.7. */
     double absorption; /**< Per M at density 1, 0 .. 1e6. Default 3; less than 0.5 is mist, more than 5 a surface. */
     /** Kelvin, 500 .. 1e9, at inner_radius (DISK, JET) or at radius (TORUS, HALO). Default 4800. */
@@ -803,9 +806,9 @@ typedef struct BhrImage {
      * pixels is the block's last row; not together with BHR_IMAGE_BOTTOM_UP. */
     int64_t row_stride;
     /** Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
-     * |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked. */
+     * |row_stride| bytes before it. At least (height - 1) |row_stride| + width times the bytes of a pixel. */
     uint64_t byte_size;
-    /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only;
+    /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters to images that are rendered or saved only;
      * BHR_IMAGE_LENSED is for bhr_set_occluder only, and elsewhere INVALID_ARGUMENT. */
     uint32_t flags;
     uint32_t reserved; /**< Reserved: 0. */
@@ -815,9 +818,10 @@ typedef struct BhrImage {
 BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 
 /** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
- * grey. Alpha is written as it is; with BHR_IMAGE_TRANSPARENT, as such a frame is rendered, colours of .png are
- * divided by it. The file appears whole or not at all; one that is replaced keeps its mode and, where the process
- * may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
+ * grey. Alpha is written as it is. A .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags,
+ * as when the frame was rendered, they are divided by alpha. The file appears whole or not at all; one that is
+ * replaced keeps its mode and, where the process may set it, its owner, and where path is a symbolic link, its
+ * target is written (docs/files.md).
  * Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
  * built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
  * another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
@@ -825,9 +829,9 @@ BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
 /** Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the
- * top down, RGBA8_SRGB of 8-bit files of sRGB, RGBA32F of others: linear light in Rec. 709, of what the file says
- * its colours are. The pixels are the library's: give them back with bhr_image_release, once. docs/files.md says
- * how files are read, and the bounds that are held.
+ * top down, RGBA8_SRGB for 8-bit files in sRGB, else RGBA32F, which is linear light in Rec. 709, converted from the
+ * colours that the file states. The pixels are the library's: give them back with bhr_image_release, once.
+ * docs/files.md says how files are read, and which bounds they have.
  * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
  * library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
  * pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken
@@ -861,7 +865,7 @@ BHR_NODISCARD BhrStatus bhr_image_release(BhrImage *image);
 typedef struct BhrSky {
     uint32_t struct_size;    /**< sizeof(BhrSky). */
     uint32_t flags;          /**< BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY. */
-    double stars_brightness; /**< 0 .. 1e6. Default 1. */
+    double stars_brightness; /**< A factor on the light of the stars, 0 .. 1e6. Default 1. */
     double map_brightness;   /**< A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1. */
     /** Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole) to
      * scene axes. Default (0, 0, 0, 1). */
@@ -873,7 +877,7 @@ typedef struct BhrSky {
 BHR_NODISCARD BhrStatus bhr_sky_init(BhrSky *sky, size_t struct_size);
 
 /** Sets the sky; NULL: black.
- * Errors: UNSUPPORTED for flags that this version cannot draw. */
+ * Errors: INVALID_ARGUMENT also for an orientation whose length is not 1 to within 1e-3. */
 BHR_NODISCARD BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
 
 /** Reads the sky as it is set. */
@@ -1011,8 +1015,8 @@ BHR_NODISCARD BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
 /** Fills in the defaults. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_preset_options_init(BhrPresetOptions *options, size_t struct_size);
 
-/** Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the thin
- * disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all
+/** Gives the scene a look, and decides its volumes as well: with DEEP the scene has the look's one volume in place
+ * of the thin disk, with THIN none. Volumes that were set before are gone; hot spots stay. options NULL: all
  * defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
  *
  * THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about
@@ -1032,7 +1036,7 @@ typedef int32_t BhrMethod;
 #define BHR_METHOD_RK4 1      /**< Every ray integrated by fixed-step fourth-order Runge-Kutta. */
 #define BHR_METHOD_ADAPTIVE 2 /**< Every ray integrated by embedded Runge-Kutta with error control. */
 
-/** The rays that matter with depth, volumes and hot spots, is summed along. @since 0.2.0 */
+/** The rays along which volumes and hot spots are summed. @since 0.2.0 */
 typedef int32_t BhrVolumeResolution;
 
 #define BHR_VOLUME_RESOLUTION_FULL 0 /**< The rays of all pixels. */
@@ -1051,7 +1055,7 @@ typedef struct BhrQuality {
     uint32_t samples_per_pixel;
     /** Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;
-    /** RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0 means the default, 0.1. */
+    /** RK4: the step, 1e-3 .. 0.5, in Mino time scaled to the ray (docs/numerics.md); 0 means the default, 0.1. */
     double step;
     /** ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers use their
      * own. */
@@ -1087,7 +1091,7 @@ typedef int32_t BhrView;
  * without such a crossing. */
 #define BHR_VIEW_REDSHIFT 1
 
-/** The number of the image, 0, 1, 2 .., of the first crossing within the disk's radii; -1 sky; -2 captured. */
+/** The number of the image, 0, 1, 2 ..., of the first crossing within the disk's radii; -1 sky; -2 captured. */
 #define BHR_VIEW_ORDER 2
 
 /** The angle between look direction and sky direction, radians; NaN where the ray is captured. */
@@ -1147,9 +1151,9 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * written an error leaves the target alone; after that the message says so, and what is not yet rendered is
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
- * region's frame; INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide
- * as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the
- * progress callback. */
+ * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times as
+ * wide as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED
+ * by the progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /** Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -1266,8 +1270,8 @@ BHR_NODISCARD BhrStatus bhr_render_outputs(BhrContext *context, const BhrOutput 
                                            uint32_t count, BhrJob **out_job);
 
 /** Writes outputs that bhr_render_outputs has made to an .exr file: one part with a layer for each, and among its
- * attributes every parameter of the scene that the frame of the first output showed (of the scene as it is now for
- * pixels of no frame of this context, or of one 512 images ago). docs/files.md lists channels and attributes. Alpha is
+ * attributes every parameter of the scene that the frame of the first output showed; for pixels that are not of the
+ * last 512 images of this context, of the scene as it is now. docs/files.md lists channels and attributes. Alpha is
  * written as it is. A file is replaced as bhr_image_save does it.
  * Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
  * UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.
@@ -1305,11 +1309,11 @@ typedef int32_t BhrPresentMode;
 #define BHR_PRESENT_IMMEDIATE 1 /**< Frames are shown at once, and may tear. */
 #define BHR_PRESENT_MAILBOX 2   /**< Never torn: the newest frame at the display's rate; older ones are dropped. */
 
-/** Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts).
- * Call it on the thread that uses the display. A window takes one surface at a time; it and its display must
- * outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put there
- * as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End *out_surface
- * with bhr_surface_destroy. docs/window.md.
+/** Makes a surface of a window, width x height pixels (0 x 0: minimised; else, on X11, the window's own size
+ * counts). Call it on the thread that uses the display. A window takes one surface at a time; it and its display
+ * must outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put
+ * there as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End
+ * *out_surface with bhr_surface_destroy. docs/window.md.
  * Errors: INVALID_ARGUMENT for a window that does not exist (X11), or a side beyond 2^20; INVALID_STATE for a
  * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform or build does
  * not have, where nothing can present, and for sides beyond the device's images (mostly 16384); DEVICE_LOST also
@@ -1407,8 +1411,7 @@ BHR_NODISCARD BhrStatus bhr_camera_ray(const BhrContext *context, uint32_t width
  * disk's flags say, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID,
  * not an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
  * least 56 and 184; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a longer
- * hit is cleared there. With count 0 the call does nothing. An error while tracing clears out_hits.
- * Errors: UNSUPPORTED. */
+ * hit is cleared there. With count 0 the call does nothing. An error while tracing clears out_hits. */
 BHR_NODISCARD BhrStatus bhr_trace_rays(BhrContext *context, const BhrRay *rays, size_t ray_size, size_t count,
                                        BhrHit *out_hits, size_t hit_size);
 
@@ -1417,8 +1420,8 @@ BHR_NODISCARD BhrStatus bhr_trace_rays(BhrContext *context, const BhrRay *rays, 
  * capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
  * escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
  * they ran out. The curve is traced in double precision on the CPU, whatever the backend.
- * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's
- * horizon. */
+ * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as one from inside a spinning hole's
+ * horizon is. */
 BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context, const BhrRay *ray, uint32_t capacity, double *out_points,
                                        uint32_t *out_count);
 
@@ -1541,8 +1544,9 @@ BHR_NODISCARD BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
 /**
  * BHR_INIT(camera); is bhr_camera_init(&camera, sizeof camera); and likewise for a variable of every other struct that
  * begins with struct_size: the variable's type says which. It takes no pointer: write BHR_INIT(*camera). It gives no
- * status, as nothing is wrong with a variable; a program that may meet a library older than the function calls that
- * itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined. @since 0.2.0
+ * status, because it cannot fail. A program that must run with an older library, which may lack the _init function,
+ * sets such a struct up itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined.
+ * @since 0.2.0
  */
 #if defined(__cplusplus)
 #define BHR_INIT(variable) BhrInit(variable)

@@ -290,12 +290,13 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
     }
 }
 
-/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths): a STATIC one
-/// stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
-/// it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time that went by:
-/// add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless (docs/cameras.md).
-/// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible; UNSUPPORTED for
-/// VELOCITY.
+/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
+/// STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
+/// stays where it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time
+/// that went by: add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless
+/// (docs/cameras.md).
+/// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
+/// ends in the centre or, with spin, at the horizon; UNSUPPORTED for VELOCITY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(
     context: *const BhrContext,

@@ -300,8 +300,8 @@ pub unsafe fn fail_device(context: *mut BhrContext, what: &'static str, passing:
     }
 }
 
-/// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was
-/// on, into buffer: at most size - 1 bytes, cut between characters, and a NUL; nothing when buffer is NULL or size
+/// Copies the message of the last call that failed on this context or on one of its surfaces, on whichever thread,
+/// into buffer: at most size - 1 bytes, cut between characters, and a NUL; nothing when buffer is NULL or size
 /// is 0. Returns the length of the whole message in bytes without its NUL, less than 10,000; 0 when no call has
 /// failed, and for a NULL context. It waits for no other call. Where other threads make failing calls meanwhile, the
 /// message may be one of theirs. For hosts whose calls move between threads: docs/errors.md. @since 0.2.0

@@ -151,8 +151,8 @@ pub unsafe extern "C" fn bhr_hole_info_init(info: *mut BhrHoleInfo, struct_size:
     anywhere("bhr_hole_info_init", || unsafe { versioned::init(info, "info", struct_size) })
 }
 
-/// Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
-/// NaN.
+/// Fills in info for the hole and the camera as they are set; where the camera's motion is not possible, its numbers
+/// are NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut BhrHoleInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -163,8 +163,8 @@ pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut Bh
 }
 
 /// Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph) of
-/// signature - + + +.
-/// Errors: INVALID_ARGUMENT at the centre and on the horizon.
+/// signature - + + +, inside horizons too.
+/// Errors: INVALID_ARGUMENT at the centre and on a horizon.
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_metric;16]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_metric_at(
@@ -184,8 +184,8 @@ pub unsafe extern "C" fn bhr_metric_at(
 }
 
 /// Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in
-/// Boyer-Lindquist (t, r, th, ph).
-/// Errors: INVALID_ARGUMENT at the centre, on the horizon and on the axis.
+/// Boyer-Lindquist (t, r, th, ph), inside horizons too.
+/// Errors: INVALID_ARGUMENT at the centre, on a horizon and on the axis.
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_gamma;64]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_christoffel_at(

@@ -63,9 +63,9 @@ pub struct BhrImage {
     /// pixels is the block's last row; not together with BHR_IMAGE_BOTTOM_UP.
     pub row_stride: i64,
     /// Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
-    /// |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
+    /// |row_stride| bytes before it. At least (height - 1) |row_stride| + width times the bytes of a pixel.
     pub byte_size: u64,
-    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only;
+    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters to images that are rendered or saved only;
     /// BHR_IMAGE_LENSED is for bhr_set_occluder only, and elsewhere INVALID_ARGUMENT.
     pub flags: u32,
     /// Reserved: 0.
@@ -202,9 +202,10 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 }
 
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
-/// grey. Alpha is written as it is; with BHR_IMAGE_TRANSPARENT, as such a frame is rendered, colours of .png are
-/// divided by it. The file appears whole or not at all; one that is replaced keeps its mode and, where the process
-/// may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
+/// grey. Alpha is written as it is. A .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags,
+/// as when the frame was rendered, they are divided by alpha. The file appears whole or not at all; one that is
+/// replaced keeps its mode and, where the process may set it, its owner, and where path is a symbolic link, its
+/// target is written (docs/files.md).
 /// Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
 /// built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
 /// another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
@@ -220,9 +221,9 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 }
 
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the
-/// top down, RGBA8_SRGB of 8-bit files of sRGB, RGBA32F of others: linear light in Rec. 709, of what the file says
-/// its colours are. The pixels are the library's: give them back with bhr_image_release, once. docs/files.md says
-/// how files are read, and the bounds that are held.
+/// top down, RGBA8_SRGB for 8-bit files in sRGB, else RGBA32F, which is linear light in Rec. 709, converted from the
+/// colours that the file states. The pixels are the library's: give them back with bhr_image_release, once.
+/// docs/files.md says how files are read, and which bounds they have.
 /// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
 /// library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
 /// pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken

@@ -13,7 +13,7 @@ use glam::DMat4;
 use std::mem::size_of;
 
 /// Matrices lie in memory row by row, else column by column. For matrices that multiply row vectors (DirectXMath,
-/// Unreal) it is the other way round: those that lie there row by row are given without it.
+/// Unreal) it is the other way round: those that lie in memory row by row are given without this flag.
 pub const BHR_MATRIX_ROW_MAJOR: u32 = 1u32;
 /// Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal.
 pub const BHR_MATRIX_Y_DOWN: u32 = 2u32;
@@ -49,7 +49,7 @@ unsafe fn read_matrix(pointer: *const f64, name: &str, flags: u32) -> Result<DMa
 }
 
 /// Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
-/// host's matrices; the rest of it, its motion for one, stays. Touches no context. On failure the camera stays as it
+/// host's matrices; the rest of it, such as its motion, stays. Touches no context. On failure the camera stays as it
 /// was.
 ///
 /// view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a

@@ -258,8 +258,8 @@ pub unsafe extern "C" fn bhr_render_outputs(
 }
 
 /// Writes outputs that bhr_render_outputs has made to an .exr file: one part with a layer for each, and among its
-/// attributes every parameter of the scene that the frame of the first output showed (of the scene as it is now for
-/// pixels of no frame of this context, or of one 512 images ago). docs/files.md lists channels and attributes. Alpha is
+/// attributes every parameter of the scene that the frame of the first output showed; for pixels that are not of the
+/// last 512 images of this context, of the scene as it is now. docs/files.md lists channels and attributes. Alpha is
 /// written as it is. A file is replaced as bhr_image_save does it.
 /// Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
 /// UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.

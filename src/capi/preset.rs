@@ -130,8 +130,8 @@ pub unsafe extern "C" fn bhr_preset_options_init(options: *mut BhrPresetOptions,
     anywhere("bhr_preset_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the thin
-/// disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all
+/// Gives the scene a look, and decides its volumes as well: with DEEP the scene has the look's one volume in place
+/// of the thin disk, with THIN none. Volumes that were set before are gone; hot spots stay. options NULL: all
 /// defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
 ///
 /// THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about

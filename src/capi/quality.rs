@@ -21,7 +21,7 @@ pub const BHR_METHOD_RK4: BhrMethod = 1;
 /// Every ray integrated by embedded Runge-Kutta with error control.
 pub const BHR_METHOD_ADAPTIVE: BhrMethod = 2;
 
-/// The rays that matter with depth, volumes and hot spots, is summed along. @since 0.2.0
+/// The rays along which volumes and hot spots are summed. @since 0.2.0
 pub type BhrVolumeResolution = i32;
 /// The rays of all pixels.
 pub const BHR_VOLUME_RESOLUTION_FULL: BhrVolumeResolution = 0;
@@ -43,7 +43,7 @@ pub struct BhrQuality {
     pub samples_per_pixel: u32,
     /// Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
     pub max_steps: u32,
-    /// RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0 means the default, 0.1.
+    /// RK4: the step, 1e-3 .. 0.5, in Mino time scaled to the ray (docs/numerics.md); 0 means the default, 0.1.
     pub step: f64,
     /// ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers use their
     /// own.

@@ -325,7 +325,6 @@ unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: us
 /// not an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
 /// least 56 and 184; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a longer
 /// hit is cleared there. With count 0 the call does nothing. An error while tracing clears out_hits.
-/// Errors: UNSUPPORTED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_rays(
     context: *mut BhrContext,
@@ -354,8 +353,8 @@ pub unsafe extern "C" fn bhr_trace_rays(
 /// capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
 /// escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
 /// they ran out. The curve is traced in double precision on the CPU, whatever the backend.
-/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's
-/// horizon.
+/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as one from inside a spinning hole's
+/// horizon is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

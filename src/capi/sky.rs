@@ -36,7 +36,7 @@ pub struct BhrSky {
     pub struct_size: u32,
     /// BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY.
     pub flags: u32,
-    /// 0 .. 1e6. Default 1.
+    /// A factor on the light of the stars, 0 .. 1e6. Default 1.
     pub stars_brightness: f64,
     /// A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1.
     pub map_brightness: f64,
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn bhr_sky_init(sky: *mut BhrSky, struct_size: usize) -> B
 }
 
 /// Sets the sky; NULL: black.
-/// Errors: UNSUPPORTED for flags that this version cannot draw.
+/// Errors: INVALID_ARGUMENT also for an orientation whose length is not 1 to within 1e-3.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky(context: *mut BhrContext, sky: *const BhrSky) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

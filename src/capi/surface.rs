@@ -67,11 +67,11 @@ unsafe fn on_surface(
     keep(outside_callbacks(function, || body(&surface.surface)), Some(&surface.message))
 }
 
-/// Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts).
-/// Call it on the thread that uses the display. A window takes one surface at a time; it and its display must
-/// outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put there
-/// as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End *out_surface
-/// with bhr_surface_destroy. docs/window.md.
+/// Makes a surface of a window, width x height pixels (0 x 0: minimised; else, on X11, the window's own size
+/// counts). Call it on the thread that uses the display. A window takes one surface at a time; it and its display
+/// must outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put
+/// there as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End
+/// *out_surface with bhr_surface_destroy. docs/window.md.
 /// Errors: INVALID_ARGUMENT for a window that does not exist (X11), or a side beyond 2^20; INVALID_STATE for a
 /// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform or build does
 /// not have, where nothing can present, and for sides beyond the device's images (mostly 16384); DEVICE_LOST also

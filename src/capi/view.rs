@@ -18,7 +18,7 @@ pub const BHR_VIEW_LIGHT: BhrView = 0;
 /// The redshift g of the first crossing within the disk's radii, else that of the sky; NaN where the ray is captured
 /// without such a crossing.
 pub const BHR_VIEW_REDSHIFT: BhrView = 1;
-/// The number of the image, 0, 1, 2 .., of the first crossing within the disk's radii; -1 sky; -2 captured.
+/// The number of the image, 0, 1, 2 ..., of the first crossing within the disk's radii; -1 sky; -2 captured.
 pub const BHR_VIEW_ORDER: BhrView = 2;
 /// The angle between look direction and sky direction, radians; NaN where the ray is captured.
 pub const BHR_VIEW_DEFLECTION: BhrView = 3;

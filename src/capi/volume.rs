@@ -46,10 +46,10 @@ pub const BHR_VOLUME_POWER_LAW: u32 = 2u32;
 
 /// Matter with depth, which shines and absorbs by the equation of transfer; nothing is scattered. Radii are in units
 /// of M, other lengths those that the matter itself measures. Thermal matter absorbs alike at all frequencies, and
-/// without absorption does not shine. A power law sends j = n (nu / nu_camera)^-spectral_index per M and absorbs
-/// absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being the frequency that the matter measures: a
-/// picture shows its light at the one frequency nu_camera, in the colour tint. No matter is inside the horizon.
-/// Fields that shape and flow do not use are checked all the same. docs/matter.md. @since 0.2.0
+/// without absorption does not shine. A power law emits j = n (nu / nu_camera)^-spectral_index per M, and its
+/// absorption per M is absorption n (nu / nu_camera)^-(2.5 + spectral_index), nu being the frequency that the matter
+/// measures: a picture shows its light at the one frequency nu_camera, in the colour tint. No matter is inside the
+/// horizon. Fields that shape and flow do not use are checked all the same. docs/matter.md. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrVolume {
@@ -61,11 +61,11 @@ pub struct BhrVolume {
     pub shape: BhrVolumeShape,
     /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
     pub flow: BhrFlow,
-    /// In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: the place where matter is at rest. Default 0: the ISCO
-    /// of matter that moves as flags say.
+    /// In M, 1e-6 .. 1e4, or 0 (default): the ISCO of matter that moves as flags say. DISK, JET: the inner edge;
+    /// OUTFLOW: the place where matter is at rest.
     pub inner_radius: f64,
     /// In M, greater than inner_radius, to 1e4. There is nothing beyond it, whatever the shape, and nothing at all
-    /// of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, the ISCO among them. Default 17.
+    /// of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, be that the ISCO. Default 17.
     pub outer_radius: f64,
     /// In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8.
     pub radius: f64,
@@ -74,7 +74,7 @@ pub struct BhrVolume {
     /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick
     /// one.
     pub thickness: f64,
-    /// JET: radians, 0.01 .. 1.5. Default 0.3.
+    /// JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5. Default 0.3.
     pub opening: f64,
     /// DISK, JET: 0 .. 4. Default 0.7.
     pub slope: f64,

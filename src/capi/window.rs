@@ -47,8 +47,8 @@ fn kind_name(kind: BhrWindowKind) -> &'static str {
 }
 
 /// A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
-/// Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
-/// raw-window-handle crate.
+/// Begin with bhr_window_init, or with all bytes 0 and struct_size, then set kind and what the kind names. Handles
+/// are those of the raw-window-handle crate.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrWindow {

@@ -98,8 +98,9 @@ const CLOSING: &str = r#"
 /**
  * BHR_INIT(camera); is bhr_camera_init(&camera, sizeof camera); and likewise for a variable of every other struct that
  * begins with struct_size: the variable's type says which. It takes no pointer: write BHR_INIT(*camera). It gives no
- * status, as nothing is wrong with a variable; a program that may meet a library older than the function calls that
- * itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined. @since 0.2.0
+ * status, because it cannot fail. A program that must run with an older library, which may lack the _init function,
+ * sets such a struct up itself. For C++, C from C11 on, and GCC's and Clang's C99; elsewhere it is not defined.
+ * @since 0.2.0
  */
 #if defined(__cplusplus)
 #define BHR_INIT(variable) BhrInit(variable)
