@@ -6,6 +6,7 @@
 mod imports;
 mod lengths;
 mod licences;
+mod mirrors;
 mod modules;
 mod names;
 mod shaders;
