@@ -30,19 +30,20 @@ class Frame:
     """A picture, or the values of a view. `array` is its memory; np.asarray(frame) is the same array."""
 
     # A slip in an attribute's name is an AttributeError.
-    __slots__ = ("__weakref__", "array", "format")
+    __slots__ = ("__weakref__", "array", "format", "transparent")
 
     array: npt.NDArray[Any]
     format: Format
-    #: Colours are premultiplied by alpha: a rendered frame's, where `transparent` was asked for. PNG files have straight
-    #: colours, which `save` and `to_png` then make.
-    transparent: bool = False
+    #: Colours are premultiplied by alpha: a rendered frame's, where `transparent` was asked for. PNG files have
+    #: straight colours, which `save` and `to_png` then make. False for a new frame.
+    transparent: bool
 
     def __init__(self, array: npt.NDArray[Any], format: FormatLike | None = None) -> None:
         """Wraps an array, without a copy: uint8 (RGBA8_SRGB, or BGRA8_SRGB if `format` says so), float16 or float32 of
         shape (height, width, 4), or float32 of shape (height, width). Rows may have any stride; pixels are packed."""
         self.format = _format(array, format)
         self.array = array
+        self.transparent = False
         self.image()
 
     @classmethod
