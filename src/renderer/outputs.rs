@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The outputs of a frame: rendered, in the background too, and saved with the scene that they show. Knows nothing of C.
+//! The outputs of a frame: rendered, in the background too, and saved with the scene that they show. Knows nothing of
+//! C.
 
 use super::Renderer;
 use super::made::Place;

@@ -215,7 +215,8 @@ static void frames(const std::string &folder) {
     EXPECT(context.save_outputs(outputs, folder + "/eight.exr").status() == bhr::StatusCode::unsupported);
 
     // Without the sky: PNG files of such frames have straight colours.
-    const bhr::Frame clear = context.render(WIDTH, HEIGHT, bhr::Format::rgba8_srgb, bhr::ImageFlags::transparent).value();
+    const bhr::Frame clear =
+        context.render(WIDTH, HEIGHT, bhr::Format::rgba8_srgb, bhr::ImageFlags::transparent).value();
     EXPECT(clear.is_transparent() && !frame.is_transparent() && clear.save(folder + "/clear.png"));
 
     // Floats, upside down, and a quarter of the frame.
