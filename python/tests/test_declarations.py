@@ -69,6 +69,12 @@ LEFT_OUT = {
     "bhr_volume_init",
     "bhr_hot_spot_init",
     "bhr_output_init",
+    "bhr_adapter_info_init",
+    "bhr_frame_stats_init",
+    "bhr_hole_info_init",
+    "bhr_projected_point_init",
+    "bhr_region_init",
+    "bhr_window_init",
     # Messages are read on the thread of the call that failed.
     "bhr_context_error_message",
     "bhr_job_error_message",
@@ -90,7 +96,7 @@ STRUCTS = [
 ]
 
 
-#: A VkDevice of the host's is for hosts in C.
+#: A VkDevice of the host's is for hosts in C, and cffi clears structs.
 INTEROP_LEFT_OUT = {
     "bhr_vulkan_requirements",
     "bhr_context_create_vulkan",
@@ -98,6 +104,11 @@ INTEROP_LEFT_OUT = {
     "bhr_target_vulkan",
     "bhr_semaphore_wrap_vulkan",
     "bhr_semaphore_vulkan",
+    "bhr_interop_info_init",
+    "bhr_sync_init",
+    "bhr_target_info_init",
+    "bhr_vulkan_device_init",
+    "bhr_vulkan_requirements_init",
 }
 
 
