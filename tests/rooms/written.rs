@@ -18,7 +18,9 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
         "py" | "pyi" => Some(&["\"\"\"", "#"]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
         // Scripts without an extension, and what packagers' tools read.
-        "install" | "deb" | "tarball" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => Some(&["#"]),
+        "install" | "deb" | "tarball" | "release" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => {
+            Some(&["#"])
+        }
         "txt" => name.starts_with("CMake").then_some(&["#"]),
         "md" => Some(&[]),
         "awk" | "build" | "check-links" | "Doxyfile" => Some(&["#"]),

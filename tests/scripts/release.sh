@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # packaging/release on a copy of this checkout that is ready for a release, and on copies with faults. Sourced by
-# tests/scripts/run. What builds (tarball, deb, wheel, abi) is tested by hand before a release, and its commands in
-# tests/install/packages.sh.
+# tests/scripts/run. What builds (tarball, deb, wheel, abi) has stand-ins that make small files in a moment; the
+# commands themselves are tested by tests/install/packages.sh, tests/python/run and tests/abidiff.rs.
 # shellcheck shell=bash
 
 # ready: a repository in which everything says that its version is released.
@@ -35,6 +35,37 @@ release_is_made() {
         git tag "v$version" && packaging/release --dry-run "$made"
 }
 
+# stand_in FILE: a command that runs what is on standard input.
+stand_in() { { printf '#!/bin/sh\nset -e\nversion=%s\n' "$(release_version)" && cat; } >"$1" && chmod +x -- "$1"; }
+release_has_all_parts() {
+    local version made=$scratch/released bin=$scratch/release-bin
+    version=$(release_version)
+    mkdir -p -- "$bin" && ready && cd -- "$scratch/ready" || return 1
+    stand_in packaging/tarball <<'END'
+echo x >"$1/bhr-$version-x86_64-linux-gnu.tar.gz"
+echo other >"$1/SHA256SUMS"
+END
+    stand_in packaging/deb <<'END'
+mkdir -p "$1/tree/DEBIAN"
+printf 'Package: libbhr0\nVersion: %s\nArchitecture: all\nMaintainer: a <a@localhost>\nDescription: x\n' \
+    "${OTHER_VERSION:-$version}" >"$1/tree/DEBIAN/control"
+dpkg-deb --build "$1/tree" "$1/libbhr0_${version}_amd64.deb"
+rm -r "$1/tree"
+END
+    stand_in python/build-wheel <<'END'
+echo x >"$1/bhr-$version-py3-none-manylinux_2_28_x86_64.whl"
+END
+    stand_in "$bin/cargo" <<'END'
+[ "$BHR_NEW_BASELINE" = 1 ] && cmp "tests/abi/bhr-$version.h" include/bhr.h && echo x >"tests/abi/bhr-$version.abi"
+END
+    commit stand-ins && PATH=$bin:$PATH packaging/release "$made" && cd -- "$made" && sha256sum -c SHA256SUMS &&
+        [ "$(wc -l <SHA256SUMS)" -eq 6 ] && cmp -- "abi/bhr-$version.h" "$root/include/bhr.h" || return 1
+    # A part that fails, or that makes what is of another version, is the end.
+    cd -- "$scratch/ready" && rm -r -- "$made" && ! OTHER_VERSION=9.0 packaging/release "$made" deb sums &&
+        [ ! -e "$made/SHA256SUMS" ] && stand_in python/build-wheel <<<'exit 3' && commit broken &&
+        ! packaging/release "$made" wheel sums && [ ! -e "$made/SHA256SUMS" ]
+}
+
 # refuses WORDS COMMAND...: after the command, nothing is made, and these words say why.
 refuses() {
     local words=$1
@@ -62,4 +93,5 @@ release_refuses() {
 }
 
 check "a release is made" release_is_made
+check "a release has all its parts" release_has_all_parts
 check "faults of a release are found" release_refuses
