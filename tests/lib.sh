@@ -178,6 +178,7 @@ begin() {
     done
     (
         status=0 since=$SECONDS processor_ms=0 scratch=$file.d
+        rm -rf -- "$scratch" "$file.end" # an earlier count_begun's
         mkdir -- "$scratch"
         ("$@") >"$file" 2>&1 </dev/null || status=$?
         processor_time
@@ -189,7 +190,7 @@ begin() {
 count_begun() {
     local i status seconds processor_ms
     for i in "${!begun[@]}"; do
-        wait "${begun_pids[i]}"
+        wait "${begun_pids[i]}" 2>/dev/null # which may have been waited for already
         status=1 seconds=0 processor_ms=0
         [ -s "$scratch/begun-$i.end" ] && read -r status seconds processor_ms <"$scratch/begun-$i.end"
         count "${begun[i]}" "$status" "$seconds" "$scratch/begun-$i" "$processor_ms"

@@ -11,8 +11,8 @@ use std::sync::{Mutex, Once, OnceLock, PoisonError};
 /// Runs `body`, with as much stack as anything in bhr needs; a panic becomes an `Internal` error that says where.
 /// Errors: those of `body`; OUT_OF_MEMORY where there is no memory for a stack, and `body` did not run.
 pub(super) fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
-    let refused =
-        |_| Err(Error::new(ErrorKind::OutOfMemory, "this thread has little stack left, and no memory for more"));
+    // Without a message, for which there may be no memory either: `finish` says that none is left.
+    let refused = |_| Err(Error::new(ErrorKind::OutOfMemory, String::new()));
     on_enough_stack(|| caught(body)).unwrap_or_else(refused)
 }
 

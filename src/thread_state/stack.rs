@@ -95,28 +95,32 @@ mod linux {
     /// Whether this much is left. Not known on fibers, whose stacks the system knows nothing of.
     fn has_enough() -> bool {
         let here = here();
-        let own = OWN.get().unwrap_or_else(|| {
-            let asked = own_bounds();
-            OWN.set(Some(asked));
-            asked
+        let own = OWN.get().unwrap_or_else(|| match own_bounds() {
+            // The next call asks again.
+            Err(libc::ENOMEM) => None,
+            asked => {
+                OWN.set(Some(asked.ok()));
+                asked.ok()
+            }
         });
         let changed = CHANGE.get().map(|change| change.bounds);
         let on = [own, changed].into_iter().flatten().find(|bounds| bounds.contains(here));
         on.is_some_and(|bounds| here - bounds.low >= ENOUGH)
     }
 
-    /// The bounds of this thread's own stack, as it may grow at most.
-    fn own_bounds() -> Option<Bounds> {
+    /// The bounds of this thread's own stack, as it may grow at most. Errors: the system's number.
+    fn own_bounds() -> Result<Bounds, i32> {
         // SAFETY: an all-zero attribute object is overwritten, read and ended.
         unsafe {
             let mut attributes = std::mem::zeroed::<libc::pthread_attr_t>();
-            if libc::pthread_getattr_np(libc::pthread_self(), &mut attributes) != 0 {
-                return None;
+            let mut failed = libc::pthread_getattr_np(libc::pthread_self(), &mut attributes);
+            if failed != 0 {
+                return Err(failed);
             }
             let (mut low, mut size) = (null_mut(), 0);
-            let found = libc::pthread_attr_getstack(&attributes, &mut low, &mut size) == 0;
+            failed = libc::pthread_attr_getstack(&attributes, &mut low, &mut size);
             libc::pthread_attr_destroy(&mut attributes);
-            found.then(|| Bounds { low: low.addr(), high: low.addr().saturating_add(size) })
+            if failed == 0 { Ok(Bounds { low: low.addr(), high: low.addr().saturating_add(size) }) } else { Err(failed) }
         }
     }
 
