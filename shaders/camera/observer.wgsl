@@ -41,7 +41,7 @@ fn aberrate(look: vec3<f32>) -> LookDirection {
     let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
     let n = normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio);
     var seen = LookDirection(look, n, ratio);
-    if gamma > SWIFT_GAMMA {
+    if bitcast<f32>(not_inlined(bitcast<u32>(gamma))) > SWIFT_GAMMA {
         // With the angle w between look and the motion, and f = 1 - cos w: 1 - beta cos w = (1 - beta) + beta f, and
         // along the motion n holds (cos w - beta) / (1 - beta cos w), across it what look holds, times ratio.
         let motion = normalize(beta);
@@ -73,7 +73,7 @@ fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     let along = dot(beta, turn);
     let ratio = seen.frequency_ratio;
     var turned = ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
-    if gamma > SWIFT_GAMMA {
+    if bitcast<f32>(not_inlined(bitcast<u32>(gamma))) > SWIFT_GAMMA {
         // The derivative of what aberrate has for these, with d(cos w) = motion . turn = -off . turn.
         let motion = normalize(beta);
         let off = seen.look - motion;

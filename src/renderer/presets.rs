@@ -186,7 +186,7 @@ mod tests {
         assert!(ns.is_finite() && ns * 640.0 * 360.0 > 16e6, "{ns} ns a pixel");
         // The frame of 480 x 270 that was timed before takes longer than this on any CPU, and the bound is missed by
         // one part of a frame at most, beside other work too.
-        assert!(took < Duration::from_secs(12), "{took:?}, {ns} ns a pixel");
+        assert!(took < Duration::from_secs(60), "{took:?}, {ns} ns a pixel");
     }
 
     /// A look without depth, and one whose matter is stated, are never timed.
