@@ -32,10 +32,10 @@ impl Success for SuccessStatus {
     }
 }
 
-/// A call that touches nothing shared: allowed inside callbacks.
+/// A call that touches nothing shared and takes little stack: allowed inside callbacks.
 pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> BhrStatus {
     let _call = Call::enter();
-    finish(function, guarded(body))
+    finish(function, guarded_always(body))
 }
 
 /// A call without a context that reaches drivers or shared state: refused inside callbacks, and in the end of the
@@ -43,6 +43,13 @@ pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> Bhr
 pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
     let _call = Call::enter();
     finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded(body)))
+}
+
+/// As [`outside_callbacks`], for a call that takes little stack, and whose failures are another's: what a job has come
+/// to does not depend on memory for a stack of the thread that asks.
+pub(super) fn outside_callbacks_always<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
+    let _call = Call::enter();
+    finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded_always(body)))
 }
 
 /// Keeps the message and logs it. The status of `result`.

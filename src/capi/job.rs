@@ -3,7 +3,7 @@
 
 use super::call::{break_if_internal, keep, on_context};
 use super::context::BhrContext;
-use super::entry::{self, SuccessStatus, destroy, finish, outside_callbacks};
+use super::entry::{self, SuccessStatus, destroy, finish, outside_callbacks_always};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
@@ -91,10 +91,10 @@ pub(super) unsafe fn on_job<T: entry::Success>(
 ) -> BhrStatus {
     // SAFETY: this function's contract.
     let Some(job) = (unsafe { job.as_ref() }) else {
-        return outside_callbacks::<()>(function, || Err(is_null("job")));
+        return outside_callbacks_always::<()>(function, || Err(is_null("job")));
     };
     let _scope = log::Scope::enter(job.sink.clone());
-    let status = outside_callbacks(function, || {
+    let status = outside_callbacks_always(function, || {
         let result = body(job);
         break_if_internal(&result, &job.broken);
         result

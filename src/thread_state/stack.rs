@@ -120,7 +120,11 @@ mod linux {
             let (mut low, mut size) = (null_mut(), 0);
             failed = libc::pthread_attr_getstack(&attributes, &mut low, &mut size);
             libc::pthread_attr_destroy(&mut attributes);
-            if failed == 0 { Ok(Bounds { low: low.addr(), high: low.addr().saturating_add(size) }) } else { Err(failed) }
+            if failed == 0 {
+                Ok(Bounds { low: low.addr(), high: low.addr().saturating_add(size) })
+            } else {
+                Err(failed)
+            }
         }
     }
 

@@ -233,7 +233,8 @@ fn is_sound(matrix: DMat3) -> bool {
 }
 
 /// Lights given in CIE XYZ, by columns, to Rec. 709, whose white takes the place of `white` as Bradford has it (Lam
-/// 1985, as in ICC.1:2022, annex E). `None` where numbers are no finite ones, or too large for colours.
+/// 1985, as in ICC.1:2022, annex E). `None` where numbers are not finite or too large for colours, and where the three
+/// lights do not span a space.
 pub(super) fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
     // The answers of three kinds of cones, sharpened, by rows.
     const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
@@ -242,5 +243,5 @@ pub(super) fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
     let adapted = cones.inverse() * DMat3::from_diagonal(to / from) * cones;
     let rec709 = Primaries::REC709.to_xyz()?.inverse();
     let matrix = rec709 * adapted * lights;
-    is_sound(matrix).then_some(matrix)
+    (lights.determinant().abs() > 1e-6 && is_sound(matrix)).then_some(matrix)
 }

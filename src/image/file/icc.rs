@@ -20,7 +20,7 @@ pub(super) fn read(profile: &[u8], channels: usize) -> Option<Colours> {
         return None;
     }
     match (space, channels) {
-        (b"GRAY", 1) => Some(Colours::of_curve(curve(tag(profile, b"kTRC")?)?)),
+        (b"GRAY", 1) if profile.get(20..24)? == b"XYZ " => Some(Colours::of_curve(curve(tag(profile, b"kTRC")?)?)),
         (b"RGB ", 3) if profile.get(20..24)? == b"XYZ " => {
             let curves = [b"rTRC", b"gTRC", b"bTRC"].into_iter().map(|name| curve(tag(profile, name)?));
             let mut curves = curves.collect::<Option<Vec<_>>>()?;

@@ -39,6 +39,8 @@ pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> 
         let Some(([a, b, c, d], name)) = head.split_first_chunk() else { break };
         let length = u64::from(u32::from_be_bytes([*a, *b, *c, *d]));
         match name {
+            // The first one counts; the decoder passes over others.
+            b"iCCP" if !matches!(found, Profile::Absent) => {}
             b"iCCP" if length > MAX_PROFILE_BYTES => found = Profile::TooLong,
             b"iCCP" => found = Profile::Packed(length),
             b"IDAT" | b"IEND" => break,
