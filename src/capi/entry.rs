@@ -45,8 +45,8 @@ pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() 
     finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded(body)))
 }
 
-/// As [`outside_callbacks`], for a call that takes little stack, and whose failures are another's: what a job has come
-/// to does not depend on memory for a stack of the thread that asks.
+/// An [`outside_callbacks`] call that takes little stack and does without memory for another: what a job has come to
+/// does not depend on the memory of the thread that asks.
 pub(super) fn outside_callbacks_always<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
     let _call = Call::enter();
     finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded_always(body)))
