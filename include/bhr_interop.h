@@ -470,6 +470,7 @@ BHR_NODISCARD BhrStatus bhr_semaphore_wrap_vulkan(BhrContext *context, BhrSemaph
 BHR_INIT_INTEROP(BHR_INIT_FUNCTION)
 #else
 #undef BHR_INIT_MORE
+/** The structs of this header, which BHR_INIT knows as well. */
 #define BHR_INIT_MORE BHR_INIT_INTEROP(BHR_INIT_CASE)
 #endif
 

@@ -72,6 +72,12 @@ static uint32_t mostly(uint32_t usual, uint32_t rare) {
     return byte() < 245 ? usual : rare;
 }
 
+/* The size of an array's elements that a call is told: a wrong one is smaller, as a larger one says that the array
+ * takes more memory than it does. */
+static size_t element_size(size_t size) {
+    return mostly((uint32_t)size, byte() % (uint32_t)size);
+}
+
 /* ---- what is checked ---- */
 
 static void fail(const char *what) {
@@ -272,7 +278,7 @@ static void scene_call(BhrContext *context) {
             volumes[i].outer_radius = mostly(1, 0) != 0 ? volumes[i].outer_radius : number();
             volumes[i].absorption = mostly(1, 0) != 0 ? volumes[i].absorption : number();
         }
-        check(bhr_set_volumes(context, volumes, mostly(sizeof volumes[0], byte()), mostly(byte() % 3, 5)));
+        check(bhr_set_volumes(context, volumes, element_size(sizeof volumes[0]), mostly(byte() % 3, 5)));
         break;
     case 16:
         for (size_t i = 0; i < 2; i++) {
@@ -282,7 +288,7 @@ static void scene_call(BhrContext *context) {
             spots[i].radius = mostly(1, 0) != 0 ? spots[i].radius : number();
             spots[i].azimuth = number();
         }
-        check(bhr_set_hot_spots(context, spots, mostly(sizeof spots[0], byte()), mostly(byte() % 3, 9)));
+        check(bhr_set_hot_spots(context, spots, element_size(sizeof spots[0]), mostly(byte() % 3, 9)));
         break;
     case 14:
         bhr_camera_init(&camera, sizeof camera);
@@ -370,7 +376,7 @@ static void output_call(BhrContext *context, size_t i) {
             images[k].format = single ? BHR_FORMAT_R32F : BHR_FORMAT_RGBA32F;
         }
     }
-    const size_t size = mostly(sizeof outputs[0], byte());
+    const size_t size = element_size(sizeof outputs[0]);
     if (byte() < 20) {
         check(bhr_save_outputs(context, outputs, size, number_of, "/absent/outputs.exr"));
         return;

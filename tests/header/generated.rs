@@ -144,6 +144,7 @@ const INTEROP_CLOSING: &str = r#"
 BHR_INIT_INTEROP(BHR_INIT_FUNCTION)
 #else
 #undef BHR_INIT_MORE
+/** The structs of this header, which BHR_INIT knows as well. */
 #define BHR_INIT_MORE BHR_INIT_INTEROP(BHR_INIT_CASE)
 #endif
 
