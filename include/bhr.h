@@ -113,8 +113,8 @@
  *   not cancelled (pthread_cancel, of deferred type) inside a call, nor in a callback from one: the request waits.
  *
  *   A call needs 64 KiB of stack on Linux (x86, x86-64, AArch64), also on fibers: where less than 512 KiB are known to
- *   be left, it continues on a stack of bhr's, and its callbacks run on the host's. Elsewhere it needs 512 KiB, because
- *   of drivers.
+ *   be left, it continues on a stack of bhr's, and its callbacks run on the host's. A callback must not switch to
+ *   another fiber. Elsewhere a call needs 512 KiB, because of drivers.
  *
  * Memory
  *   Where memory is refused a call returns OUT_OF_MEMORY, with the size, and the context stays usable. The same error

@@ -7,3 +7,9 @@ pub fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
     x ^ (x >> 16)
 }
+
+/// Whether tests take as long as it takes, in `tests/run all`; everyday they stay short.
+#[cfg(test)]
+pub fn runs_all() -> bool {
+    std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1")
+}

@@ -3,6 +3,7 @@
 // src/emit/bands.rs, where the reasons are. Knows no pattern.
 
 #import constants
+#import shared/band
 #import shared/math
 
 // The number of the first band that shows at a radius, how many do, and the weights of the first and the next.
@@ -37,16 +38,15 @@ fn band_index(number: i32, first: i32) -> u32 {
     return u32(clamp(number - first, 0, i32(MOST_BANDS) - 1));
 }
 
-// The generations of a band (age, time from birth to birth, number, drift) that live `later` than the reference time.
-fn generations(band: vec4<u32>, later: f32) -> Generations {
-    let spacing = bitcast<f32>(band.y);
-    let since = bitcast<f32>(band.x) + later;
-    let births = floor(since / spacing);
-    let young = since - births * spacing;
-    let grown = young / (GENERATION_FADE * spacing);
+// The generations of a band that live `later` than the reference time.
+fn generations(band: Band, later: f32) -> Generations {
+    let since = band.age + later;
+    let births = floor(since / band.spacing);
+    let young = since - births * band.spacing;
+    let grown = young / (GENERATION_FADE * band.spacing);
     let grows = grown < 1.0;
     let turn = 0.5 * PI * min(grown, 1.0);
-    return Generations(young, band.z + bitcast<u32>(i32(births)), select(1u, 2u, grows),
+    return Generations(young, band.generation + bitcast<u32>(i32(births)), select(1u, 2u, grows),
         select(vec2<f32>(1.0, 0.0), vec2<f32>(sin(turn), cos(turn)), grows));
 }
 

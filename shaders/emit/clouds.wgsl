@@ -13,15 +13,24 @@
 #requires var clouds: Clouds
 
 struct Cloud {
-    // The standard deviation of ln P, which is 0 without structure; clumping, heating; the period in ln r.
-    structure: vec4<f32>,
-    // 1 over the thickness; JET: opening, radius, and 1; else 0.
-    shape: vec4<f32>,
-    // Seed, number of the first band (i32), 1 if the angular velocity changes with the distance from the axis, else 0;
-    // 0.
-    pattern: vec4<u32>,
-    // Age, time from birth to birth (f32), number of the youngest generation, drift (f32).
-    bands: array<vec4<u32>, MOST_BANDS>,
+    // The standard deviation of ln P, which is 0 without structure.
+    strength: f32,
+    clumping: f32,
+    heating: f32,
+    // The pattern's period in ln r.
+    period: f32,
+    // 1 over the thickness; 1 for a jet, else 0; and a jet's opening and radius.
+    per_thickness: f32,
+    is_jet: u32,
+    opening: f32,
+    radius: f32,
+    seed: u32,
+    // The number of the first band.
+    first_band: i32,
+    // 1 if the angular velocity changes with the distance from the axis, else 0.
+    leans: u32,
+    unused: u32,
+    bands: array<Band, MOST_BANDS>,
 }
 
 struct Clouds {
@@ -47,22 +56,23 @@ struct Blur {
 // The factors on density and temperature. The two generations of a band go side by side, in the components of vectors,
 // also where one has the weight 0: GPUs then wait for both at once.
 fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32> {
-    let structure = clouds.volumes[index].structure;
-    if structure.x <= 0.0 {
+    let strength = clouds.volumes[index].strength;
+    if strength <= 0.0 {
         return vec2<f32>(1.0);
     }
+    let clumping = clouds.volumes[index].clumping;
     let ln_r = log(at.r);
     let sin2 = max((1.0 - at.cos) * (1.0 + at.cos), 1e-12);
     let sin = sqrt(sin2);
     let height = cloud_height(index, at.r, at.cos);
     let texels = cloud_texels(index);
-    let pattern = clouds.volumes[index].pattern;
+    let seed = clouds.volumes[index].seed;
     // Texels per rad: around, and across the shape. Names that end with 2 are squares, which spare roots.
     let around = texels.x / sin;
     let across = texels.z * height.y * sin;
     let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));
     let widest = CLOUD_SHARP * blur.footprint / at.r;
-    let lean2 = select(0.0, at.cos * at.cos / sin2, pattern.z == 1u);
+    let lean2 = select(0.0, at.cos * at.cos / sin2, clouds.volumes[index].leans == 1u);
     let wound_texels = 1.0 / (WOUND * texels.y);
 
     let shown = bands_at(ln_r);
@@ -70,11 +80,11 @@ fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32
     var lost = vec2<f32>(0.0);
     for (var k = 0u; k < shown.count; k += 1u) {
         let number = shown.first + i32(k);
-        let band = clouds.volumes[index].bands[band_index(number, bitcast<i32>(pattern.y))];
+        let band = clouds.volumes[index].bands[band_index(number, clouds.volumes[index].first_band)];
         let alive = generations(band, at.later);
-        let age = alive.young + vec2<f32>(0.0, bitcast<f32>(band.y));
-        let keys = vec2<u32>(generation_key(number, alive.youngest, pattern.x),
-            generation_key(number, alive.youngest - 1u, pattern.x));
+        let age = alive.young + vec2<f32>(0.0, band.spacing);
+        let keys = vec2<u32>(generation_key(number, alive.youngest, seed),
+            generation_key(number, alive.youngest - 1u, seed));
         let wound = (texels.x * SHEAR * abs(omega)) * age;
         let wound2 = wound * wound;
         let leaning2 = lean2 * wound2;
@@ -82,17 +92,17 @@ fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32
         let seen2 = max(widest * widest * finest2, wound_texels * wound_texels * max(wound2, leaning2));
         let level = max(0.5 * log2(max(seen2, vec2<f32>(least * least))), vec2<f32>(0.0));
         let turns = (at.azimuth - omega * age) / TAU;
-        let rows = (ln_r - bitcast<f32>(band.w) * age) / structure.w;
+        let rows = (ln_r - band.drift * age) / clouds.volumes[index].period;
         let layer = height.x / FILAMENT_HEIGHT;
         let young = vec3<f32>(turns.x, rows.x, layer) + cloud_shift(keys.x);
         let old = vec3<f32>(turns.y, rows.y, layer) + cloud_shift(keys.y);
-        let s = structure.x * select(shown.shares.x, shown.shares.y, k == 1u) * alive.weights;
+        let s = strength * select(shown.shares.x, shown.shares.y, k == 1u) * alive.weights;
         sum += dot(s, vec2<f32>(filament_value(young, level.x), filament_value(old, level.y)));
         let deviation = s * sqrt(vec2<f32>(filament_variance(level.x), filament_variance(level.y)));
-        lost += vec2<f32>(filament_log_mean(structure.y * deviation.x), filament_log_mean(deviation.x))
-            + vec2<f32>(filament_log_mean(structure.y * deviation.y), filament_log_mean(deviation.y));
+        lost += vec2<f32>(filament_log_mean(clumping * deviation.x), filament_log_mean(deviation.x))
+            + vec2<f32>(filament_log_mean(clumping * deviation.y), filament_log_mean(deviation.y));
     }
-    return exp(vec2<f32>(structure.y * sum - lost.x, structure.z * (sum - lost.y)));
+    return exp(vec2<f32>(clumping * sum - lost.x, clouds.volumes[index].heating * (sum - lost.y)));
 }
 
 // The place of a generation in the block, in periods, from the bits of it.
@@ -106,24 +116,25 @@ fn level_variances(level: u32) -> vec2<f32> {
 
 // A coordinate across the shape that matter keeps while it moves, and its change with cos th.
 fn cloud_height(index: u32, r: f32, c: f32) -> vec2<f32> {
-    let shape = clouds.volumes[index].shape;
-    if shape.w == 0.0 {
-        return vec2<f32>(c * shape.x, shape.x);
+    let per_thickness = clouds.volumes[index].per_thickness;
+    if clouds.volumes[index].is_jet == 0u {
+        return vec2<f32>(c * per_thickness, per_thickness);
     }
+    let wall = jet_wall(r, clouds.volumes[index].opening, clouds.volumes[index].radius);
     let side = select(OPPOSITE, -OPPOSITE, c < 0.0);
-    return vec2<f32>((abs(c) - jet_wall(r, shape.y, shape.z)) * shape.x + side, shape.x);
+    return vec2<f32>((abs(c) - wall) * per_thickness + side, per_thickness);
 }
 
 // Texels of the finest level per rad of azimuth, per e-fold of the radius and per thickness.
 fn cloud_texels(index: u32) -> vec3<f32> {
-    return vec3<f32>(FILAMENT_COLUMNS / TAU, FILAMENT_ROWS / clouds.volumes[index].structure.w,
+    return vec3<f32>(FILAMENT_COLUMNS / TAU, FILAMENT_ROWS / clouds.volumes[index].period,
         FILAMENT_LAYERS / FILAMENT_HEIGHT);
 }
 
 // The most texels of the finest level that a stretch of a ray passes, along which 1/r goes from u.x to u.y, cos th from
 // c.x to c.y, and which sweeps the angle `swept`. 0 without structure.
 fn cloud_passed(index: u32, u: vec2<f32>, c: vec2<f32>, swept: f32) -> f32 {
-    if clouds.volumes[index].structure.x <= 0.0 {
+    if clouds.volumes[index].strength <= 0.0 {
         return 0.0;
     }
     let texels = cloud_texels(index);
@@ -141,7 +152,7 @@ fn cloud_passed(index: u32, u: vec2<f32>, c: vec2<f32>, swept: f32) -> f32 {
 fn cloud_samples(index: u32, passed: f32, r: f32, footprint: f32) -> f32 {
     let texels = cloud_texels(index);
     let sheared = texels.x * HALF_SHEARED;
-    let finest = max(sqrt(texels.y * texels.y + sheared * sheared), texels.z * clouds.volumes[index].shape.x);
+    let finest = max(sqrt(texels.y * texels.y + sheared * sheared), texels.z * clouds.volumes[index].per_thickness);
     return passed / (CLOUD_SPACING * max(CLOUD_COARSE * footprint / r * finest, 1.0));
 }
 

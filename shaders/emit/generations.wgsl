@@ -39,27 +39,27 @@ struct PieceBlur {
 // The clouds of a piece whose middle is at `ln_r`, and whose light left its near end, that of the latest light, `later`
 // than the reference time.
 fn piece_clouds(index: u32, ln_r: f32, later: f32) -> PieceClouds {
-    let pattern = clouds.volumes[index].pattern;
-    let first = bitcast<i32>(pattern.y);
+    let seed = clouds.volumes[index].seed;
+    let first = clouds.volumes[index].first_band;
     let border = floor(ln_r / BAND + 0.5);
     let number = i32(border) - 1;
     let inner = clouds.volumes[index].bands[band_index(number, first)];
     let outer = clouds.volumes[index].bands[band_index(number + 1, first)];
-    let spacings = vec2<f32>(bitcast<f32>(inner.y), bitcast<f32>(outer.y));
-    let since = vec2<f32>(bitcast<f32>(inner.x), bitcast<f32>(outer.x));
+    let spacings = vec2<f32>(inner.spacing, outer.spacing);
+    let since = vec2<f32>(inner.age, outer.age);
     let births = floor((since + later) / spacings);
     let young = since - births * spacings;
     let old = young + spacings;
-    let youngest = vec2<u32>(inner.z, outer.z) + bitcast<vec2<u32>>(vec2<i32>(births));
-    let a = cloud_shift(generation_key(number, youngest.x, pattern.x));
-    let b = cloud_shift(generation_key(number, youngest.x - 1u, pattern.x));
-    let c = cloud_shift(generation_key(number + 1, youngest.y, pattern.x));
-    let d = cloud_shift(generation_key(number + 1, youngest.y - 1u, pattern.x));
+    let youngest = vec2<u32>(inner.generation, outer.generation) + bitcast<vec2<u32>>(vec2<i32>(births));
+    let a = cloud_shift(generation_key(number, youngest.x, seed));
+    let b = cloud_shift(generation_key(number, youngest.x - 1u, seed));
+    let c = cloud_shift(generation_key(number + 1, youngest.y, seed));
+    let d = cloud_shift(generation_key(number + 1, youngest.y - 1u, seed));
     return PieceClouds(
         border,
         1.0 / (GENERATION_FADE * spacings),
         vec4<f32>(young.x, old.x, young.y, old.y),
-        vec2<f32>(bitcast<f32>(inner.w), bitcast<f32>(outer.w)).xxyy,
+        vec2<f32>(inner.drift, outer.drift).xxyy,
         vec4<f32>(a.x, b.x, c.x, d.x),
         vec4<f32>(a.y, b.y, c.y, d.y),
         vec4<f32>(a.z, b.z, c.z, d.z),
@@ -85,7 +85,8 @@ fn piece_blur(
     omega: f32,
     footprint: f32,
 ) -> PieceBlur {
-    let structure = clouds.volumes[index].structure;
+    let strength = clouds.volumes[index].strength;
+    let clumps = clouds.volumes[index].clumping;
     let r = exp(ln_r);
     let sin2 = max((1.0 - cosine) * (1.0 + cosine), 1e-12);
     let sin = sqrt(sin2);
@@ -94,7 +95,7 @@ fn piece_blur(
     let across = texels.z * cloud_height(index, r, cosine).y * sin;
     let least = around / max(texels.y, across);
     let widest = CLOUD_SHARP * footprint / r;
-    let lean2 = select(0.0, cosine * cosine / sin2, clouds.volumes[index].pattern.z == 1u);
+    let lean2 = select(0.0, cosine * cosine / sin2, clouds.volumes[index].leans == 1u);
     let wound_texels = 1.0 / (WOUND * texels.y);
     let wound = (texels.x * SHEAR * abs(omega)) * (piece.ages + later);
     let wound2 = wound * wound;
@@ -106,8 +107,8 @@ fn piece_blur(
     let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), weights > vec4<f32>(LEAST_WEIGHT));
     var lost = vec2<f32>(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
-        let deviation = structure.x * weights[i] * sqrt(filament_variance(levels[i]));
-        lost += vec2<f32>(filament_log_mean(structure.y * deviation), filament_log_mean(deviation));
+        let deviation = strength * weights[i] * sqrt(filament_variance(levels[i]));
+        lost += vec2<f32>(filament_log_mean(clumps * deviation), filament_log_mean(deviation));
     }
     return PieceBlur(levels, lost, bits.x | bits.y | bits.z | bits.w);
 }

@@ -150,17 +150,17 @@ fn lights_of(
     var thicker = vec4<f32>(1.0);
     var hotter = vec4<f32>(1.0);
     if STRUCTURE {
-        let structure = clouds.volumes[0].structure;
+        let period = clouds.volumes[0].period;
         let motion = slow.begin.motion.x + t * (slow.rise.motion.x + t * slow.bend.motion.x);
         let places = FourPlaces(ln_r, cosine, azimuth, later, motion / (r * sqrt(r)));
         let layers = vec4<f32>(cloud_height(0u, r.x, cosine.x).x, cloud_height(0u, r.y, cosine.y).x,
             cloud_height(0u, r.z, cosine.z).x, cloud_height(0u, r.w, cosine.w).x) / FILAMENT_HEIGHT;
-        let sum = structure.x * piece_filaments(piece, slow.shown, places, ln_r / structure.w, layers,
-            1.0 / structure.w, slow.levels, t);
+        let sum = clouds.volumes[0].strength * piece_filaments(piece, slow.shown, places, ln_r / period, layers,
+            1.0 / period, slow.levels, t);
         let lost_density = slow.lost[0].x + t * (slow.lost[1].x + t * slow.lost[2].x);
         let lost_heat = slow.lost[0].y + t * (slow.lost[1].y + t * slow.lost[2].y);
-        thicker = exp(structure.y * sum - lost_density);
-        hotter = exp(structure.z * (sum - lost_heat));
+        thicker = exp(clouds.volumes[0].clumping * sum - lost_density);
+        hotter = exp(clouds.volumes[0].heating * (sum - lost_heat));
     }
     let seen = select(vec4<f32>(1.0), g, sends);
     let density = select(vec4<f32>(0.0), even * thicker, sends);

@@ -35,7 +35,7 @@ fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint)
         for (var old = 0u; old < alive.count; old += 1u) {
             let weight = select(shown.shares.x, shown.shares.y, k == 1u)
                 * select(alive.weights.x, alive.weights.y, old == 1u);
-            let age = alive.young + f32(old) * bitcast<f32>(band.y);
+            let age = alive.young + f32(old) * band.spacing;
             let key = generation_key(number, alive.youngest - old, frame.pattern_seed);
             let from_seed = vec2<f32>(vec2<u32>(key & 0xffffu, key >> 16u)) / 65536.0;
             let shift = vec2<f32>(-sheared * age, 0.0);

@@ -2,6 +2,7 @@
 // The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms/frame.rs.
 
 #import constants
+#import shared/band
 #import shared/matter
 #import shared/not_inlined
 #requires var frame: Frame
@@ -112,8 +113,8 @@ struct Frame {
     hole_mass: f32,
     // 1 where the occluder's things are lensed, else 0.
     occluder_lensed: f32,
-    // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
-    bands: array<vec4<u32>, MOST_BANDS>,
+    // The bands of the disk's turbulence, which do not drift.
+    bands: array<Band, MOST_BANDS>,
     // 1/r, outer end first, outside which no matter with depth is.
     depth_u: vec2<f32>,
     // The number of volumes and spots.

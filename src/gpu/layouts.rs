@@ -3,7 +3,7 @@
 //! them.
 
 use super::frame::resources::{bloom_textures, occluder, sky_target};
-use super::frame::uniforms::{clouds, frame, matter, outputs, rays};
+use super::frame::uniforms::{band, clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -27,6 +27,7 @@ fn shared() -> Vec<Layout> {
         sky_target::layout(),
         occluder::layout(),
         matter,
+        band::layout(),
         cloud,
         clouds,
         given,

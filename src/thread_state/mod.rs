@@ -51,14 +51,16 @@ impl Drop for Call {
 /// had without bhr; what it makes of the control words holds for the rest of the host's code. It is not cancelled: the
 /// unwinding that cancellation is would go through frames of bhr's and of drivers.
 pub fn call_host<R>(code: impl FnOnce() -> R) -> R {
-    let within_call = HOST_WORDS.get();
-    if let Some(host) = within_call {
-        host.set();
-    }
+    let Some(host) = HOST_WORDS.get() else {
+        // A thread of bhr's, or of a driver's, which gets its own words back.
+        let own = ControlWords::of_thread();
+        let result = stack::on_host_stack(code);
+        own.set();
+        return result;
+    };
+    host.set();
     let result = stack::on_host_stack(code);
-    if within_call.is_some() {
-        HOST_WORDS.set(Some(ControlWords::of_thread()));
-    }
+    HOST_WORDS.set(Some(ControlWords::of_thread()));
     ControlWords::set_default();
     result
 }

@@ -124,7 +124,7 @@ pub fn group() -> Group {
         twin(
             bands,
             "generations",
-            "let there = generations(vec4<u32>(word(0u), word(1u), word(2u), 0u), in1(3u));
+            "let there = generations(Band(in1(0u), in1(1u), word(2u), 0.0), in1(3u));
              out1(there.young); out2(there.weights); out_word(there.youngest);",
             push_band,
             |i, o| {

@@ -29,14 +29,20 @@ mod sky;
 
 use super::kernel::fragments::{FILES, join_wgsl};
 use super::kernel::wgsl::shader_sources;
+use crate::random::runs_all;
 use excused::{EXCUSED, Why};
 use inputs::{INPUTS, Inputs, OUTPUTS, Outputs, Random};
 use run::{Gpu, Image, Job, Source, Table};
 use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga::{Block, Function, Handle, Module, Span, Statement, front::wgsl};
 
-/// Items of random input for each twin.
-const ITEMS: usize = 2048;
+/// Items of random input for each twin, in `tests/run all` and everyday.
+const ITEMS: [usize; 2] = [2048, 512];
+
+fn items() -> usize {
+    ITEMS[usize::from(!runs_all())]
+}
+
 /// Roundings of the inputs that show how far a twin is conditioned, and the factor on what they change.
 const SHIFTS: usize = 4;
 const CONDITIONING: f64 = 4.0;
@@ -182,15 +188,15 @@ impl Group {
     /// Twins that differ, and the worst of each.
     fn compare(&self, gpu: &Gpu) -> Vec<String> {
         let source = self.source();
-        let items = |seed: usize, twin: &Twin| {
+        let inputs_of = |seed: usize, twin: &Twin| {
             let make = |item: usize| {
-                let mut inputs = Inputs::new((seed * ITEMS + item) as u64);
+                let mut inputs = Inputs::new((seed * ITEMS[0] + item) as u64);
                 (twin.inputs)(&mut inputs);
                 inputs
             };
-            (0..ITEMS).map(make).collect::<Vec<_>>()
+            (0..items()).map(make).collect::<Vec<_>>()
         };
-        let all = self.twins.iter().enumerate().map(|(seed, twin)| items(seed, twin)).collect::<Vec<_>>();
+        let all = self.twins.iter().enumerate().map(|(seed, twin)| inputs_of(seed, twin)).collect::<Vec<_>>();
         let jobs = self.twins.iter().zip(&all).enumerate().map(|(index, (twin, items))| {
             let padded = |item: &Inputs| {
                 let mut words = item.words.clone();
@@ -222,11 +228,11 @@ impl Twin {
     }
 
     /// The worst item, if it differs by more than it may.
-    fn compare(&self, items: Vec<Inputs>, given: &[f32]) -> Option<String> {
+    fn compare(&self, inputs: Vec<Inputs>, given: &[f32]) -> Option<String> {
         let name = format!("{} {}", self.fragment, self.functions);
         let (mut worst, mut message, mut largest, mut wrong, mut vague) = (0.0_f64, String::new(), 0.0_f64, 0, 0);
         let mut random = Random(7);
-        for (mut inputs, given) in items.into_iter().zip(given.chunks(OUTPUTS)) {
+        for (mut inputs, given) in inputs.into_iter().zip(given.chunks(OUTPUTS)) {
             let expected = self.expect(&inputs);
             let mut spread = vec![0.0_f64; expected.len()];
             for _ in 0..if self.conditioned { SHIFTS } else { 0 } {
@@ -256,10 +262,11 @@ impl Twin {
             vague += usize::from(item_is_vague);
         }
         println!("{name}: {worst:.2} of what is allowed, {largest:.1e} beyond conditioning; {vague} items are vague");
-        if vague * VAGUE_SHARE > ITEMS {
-            return Some(format!("{name}: {vague} of {ITEMS} items are so ill conditioned that they say nothing"));
+        let items = items();
+        if vague * VAGUE_SHARE > items {
+            return Some(format!("{name}: {vague} of {items} items are so ill conditioned that they say nothing"));
         }
-        (worst > 1.0).then(|| format!("{name}: {wrong} of {ITEMS} items differ; {message}"))
+        (worst > 1.0).then(|| format!("{name}: {wrong} of {items} items differ; {message}"))
     }
 }
 

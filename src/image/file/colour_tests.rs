@@ -84,11 +84,21 @@ fn codes_mean_what_the_first_chunk_in_the_order_of_the_standard_says() {
         // A gamma of 0 is broken, as a chunk that is too short; decoders pass over them.
         (&[(b"gAMA", &[0; 4])], 0.214_04),
         (&[(b"gAMA", &[0; 3])], 0.214_04),
+        (&[(b"gAMA", &[0, 0, 0, 1])], 0.214_04),
+        (&[(b"gAMA", &[255; 4])], 0.214_04),
+        // Code points that are not read leave the word to the next chunk.
+        (&[(b"cICP", &[1, 9, 0, 1]), gamma], 0.5),
+        (&[(b"cICP", &[3, 13, 0, 1]), srgb, gamma], 0.214_04),
     ] {
         let found = of_half(chunks);
         assert!((found - wanted).abs() < 1e-4, "{chunks:?}: {found}, wanted {wanted}");
     }
-    for (points, words) in [([1, 9, 0, 1], "transfer function 9"), ([3, 13, 0, 1], "colour primaries 3")] {
+    for (points, words) in [
+        ([1, 9, 0, 1], "transfer function 9"),
+        ([3, 13, 0, 1], "colour primaries 3"),
+        ([9, 16, 9, 1], "cICP chunk has the matrix coefficients 9"),
+        ([9, 16, 0, 7], "the range 7"),
+    ] {
         let error = light([0.5; 3], &[(b"cICP", &points)], &[]).unwrap_err();
         assert!(error.kind == ErrorKind::Unsupported && error.message.contains(words), "{error}");
     }
@@ -177,6 +187,17 @@ fn display(lights: [[f64; 3]; 3], curve: &[u8]) -> Vec<u8> {
     profile(b"RGB ", b"XYZ ", &tags)
 }
 
+/// A zlib stream of one block that is not packed (RFC 1950 and 1951), of less than 64 KiB.
+fn stored(bytes: &[u8]) -> Vec<u8> {
+    let length = bytes.len() as u16;
+    let (a, b) = bytes.iter().fold((1_u32, 0_u32), |(a, b), byte| {
+        let a = (a + u32::from(*byte)) % 65521;
+        (a, (b + a) % 65521)
+    });
+    let head = [&[0x78, 1, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes()].concat();
+    [&head[..], bytes, &(b << 16 | a).to_be_bytes()].concat()
+}
+
 /// The lights of sRGB and Display P3 in their usual profiles.
 const SRGB: [[f64; 3]; 3] = [[0.43607, 0.22249, 0.01392], [0.38515, 0.71687, 0.09708], [0.14307, 0.06061, 0.7141]];
 const P3: [[f64; 3]; 3] = [[0.51512, 0.2412, -0.00105], [0.29198, 0.69225, 0.04189], [0.1571, 0.06657, 0.78407]];
@@ -220,7 +241,9 @@ fn profiles_of_other_kinds_give_way_to_what_stands_beside_them() {
     let odd = display(SRGB, &formula(9, &[1.0; 7]));
     let dark = display([[0.0; 3]; 3], &steps(&[]));
     let huge = display([[30_000.0; 3], [-30_000.0; 3], [1.0; 3]], &steps(&[]));
-    for profile in [&tables, &grey, &perceptual, &odd, &dark, &huge, &tables[..40].to_vec(), &b"acsp".to_vec()] {
+    let (flat, white) = (display(SRGB, &steps(&[0])), display(SRGB, &formula(0, &[0.0])));
+    let short = tables[..40].to_vec();
+    for profile in [&tables, &grey, &perceptual, &odd, &dark, &huge, &flat, &white, &short, &b"acsp".to_vec()] {
         let error = light([0.5; 3], &[], profile).unwrap_err();
         assert!(
             error.kind == ErrorKind::Unsupported && error.message.contains("convert the picture to sRGB"),
@@ -231,6 +254,14 @@ fn profiles_of_other_kinds_give_way_to_what_stands_beside_them() {
     }
     // One that is broken as a chunk is no profile: two bytes of no zlib.
     near(light([0.5; 3], &[(b"iCCP", b"name\0\0ab")], &[]).unwrap(), [0.214_04; 3]);
+    // The first of several counts, a broken one too: the second is linear, whole, and longer than one may be.
+    let linear = [b"icc\0\0".to_vec(), stored(&display(SRGB, &steps(&[])))].concat();
+    let long = [&linear[..], &[0; 70_000]].concat();
+    near(light([0.5; 3], &[(b"iCCP", &linear), (b"iCCP", b"name\0\0ab")], &[]).unwrap(), [0.5; 3]);
+    for later in [&linear, &long] {
+        near(light([0.5; 3], &[(b"iCCP", b"name\0\0ab"), (b"iCCP", later)], &[]).unwrap(), [0.214_04; 3]);
+        near(light([0.5; 3], &[(b"iCCP", &linear), (b"iCCP", later)], &[]).unwrap(), [0.5; 3]);
+    }
     // Every length of a good one.
     let whole = display(P3, &formula(3, &SRGB_FORMULA));
     for length in 1..whole.len() {

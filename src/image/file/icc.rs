@@ -64,11 +64,16 @@ fn xyz(tag: &[u8]) -> Option<DVec3> {
     Some(DVec3::new(fixed(tag, 8)?, fixed(tag, 12)?, fixed(tag, 16)?))
 }
 
+/// A power of 0 would make all codes but black white: the profile is broken.
+fn exponent(power: f64) -> Option<f64> {
+    (power > 0.0).then_some(power)
+}
+
 fn curve(tag: &[u8]) -> Option<Curve> {
     match tag.first_chunk()? {
         b"curv" => Some(match word(tag, 8)? as usize {
             0 => Curve::Power(1.0),
-            1 => Curve::Power(f64::from(half_word(tag, 12)?) / 256.0),
+            1 => Curve::Power(exponent(f64::from(half_word(tag, 12)?) / 256.0)?),
             count if count > MAX_STEPS => return None,
             count => {
                 let steps = tag.get(12..12_usize.checked_add(count.checked_mul(2)?)?)?.as_chunks::<2>().0;
@@ -77,7 +82,7 @@ fn curve(tag: &[u8]) -> Option<Curve> {
         }),
         b"para" => {
             let at = |i: usize| fixed(tag, 12 + 4 * i);
-            let g = at(0)?;
+            let g = exponent(at(0)?)?;
             // From d on (a x + b)^g + e, below c x + f.
             Some(Curve::Parametric(match half_word(tag, 8)? {
                 0 => [g, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],

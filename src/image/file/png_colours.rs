@@ -18,6 +18,8 @@ pub(super) const MAX_GROWTH: u64 = 1032;
 const SRGB_GAMMA: f64 = 0.45455;
 /// libpng takes gammas for the same that differ by less than a twentieth; writers round to three digits at least.
 const GAMMA_ROUNDING: f64 = 0.005;
+/// Gammas beyond are broken chunks: displays and films have had 0.2 to 3.
+const GAMMAS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
 /// A file's profile, told without reading it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +31,7 @@ pub(super) enum Profile {
 }
 
 /// Looks for a profile before the first IDAT, and goes back to the beginning. Files that end early or are no PNG have
-/// none. Errors: IO.
+/// none. Errors: IO; UNSUPPORTED for a cICP chunk that no PNG may have, which the decoder refuses without a name.
 pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> {
     let mut found = Profile::Absent;
     file.seek(SeekFrom::Start(8)).map_err(io_error)?;
@@ -43,6 +45,12 @@ pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> 
             b"iCCP" if !matches!(found, Profile::Absent) => {}
             b"iCCP" if length > MAX_PROFILE_BYTES => found = Profile::TooLong,
             b"iCCP" => found = Profile::Packed(length),
+            b"cICP" if length == 4 => {
+                let mut points = [0; 4];
+                file.read_exact(&mut points).map_err(io_error)?;
+                check_code_points(points)?;
+                file.seek_relative(-4).map_err(io_error)?;
+            }
             b"IDAT" | b"IEND" => break,
             name if name.len() < 4 => break,
             _ => {}
@@ -54,12 +62,25 @@ pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> 
     Ok(found)
 }
 
-/// Errors: UNSUPPORTED for colours that are not read: a curve or primaries of cICP, or a profile of another kind in a
-/// file that says nothing beside it, which is how the standard lets decoders go on that read no profiles.
-pub(super) fn colours(info: &Info<'_>, profile: Profile) -> Result<Colours> {
-    if let Some(points) = info.coding_independent_code_points {
-        return of_code_points(points, info.bit_depth as u32);
+/// The last two numbers of a cICP chunk: PNGs hold RGB, and the range is full or that of video.
+fn check_code_points([_, _, matrix, range]: [u8; 4]) -> Result<()> {
+    if matrix == 0 && range <= 1 {
+        return Ok(());
     }
+    Err(Error::unsupported(format!(
+        "its cICP chunk has the matrix coefficients {matrix} and the range {range}; a PNG has the matrix coefficients \
+         0 (RGB) and the range 0 or 1"
+    )))
+}
+
+/// Errors: UNSUPPORTED for colours that are not read, a curve or primaries of cICP or a profile of another kind, in a
+/// file that says nothing beside them: the chunk that counts is the first in the standard's order that is understood.
+pub(super) fn colours(info: &Info<'_>, profile: Profile) -> Result<Colours> {
+    let unread = match info.coding_independent_code_points.map(|points| of_code_points(points, info.bit_depth as u32)) {
+        Some(Ok(colours)) => return Ok(colours),
+        Some(Err(error)) => Some(error),
+        None => None,
+    };
     let channels = if info.color_type.samples() < 3 && info.palette.is_none() { 1 } else { 3 };
     // A broken profile is passed over, as broken chunks that may be missing are.
     let profile = match profile {
@@ -69,7 +90,13 @@ pub(super) fn colours(info: &Info<'_>, profile: Profile) -> Result<Colours> {
     };
     match profile {
         Some(Some(colours)) => return Ok(colours),
-        Some(None) if info.srgb.is_none() && info.gama_chunk.is_none() => {
+        _ if info.srgb.is_some() => return Ok(Colours::srgb()),
+        _ => {}
+    }
+    let gamma = info.gama_chunk.and_then(of_gamma);
+    match (unread, profile) {
+        (Some(error), _) if gamma.is_none() => return Err(error),
+        (None, Some(None)) if gamma.is_none() => {
             return Err(Error::unsupported(
                 "its ICC profile is none of three lights and their curves, and no sRGB or gAMA chunk stands beside it: \
                  convert the picture to sRGB, or remove the profile",
@@ -77,18 +104,17 @@ pub(super) fn colours(info: &Info<'_>, profile: Profile) -> Result<Colours> {
         }
         _ => {}
     }
-    if info.srgb.is_some() {
-        return Ok(Colours::srgb());
-    }
-    let curve = info.gama_chunk.map_or(Curve::Srgb, of_gamma);
+    let curve = gamma.unwrap_or(Curve::Srgb);
     // Places that are no primaries' are passed over, as a broken chunk is.
     let matrix = info.chrm_chunk.and_then(|places| primaries_of(places).to_rec709().ok().flatten());
     Ok(Colours { matrix, ..Colours::of_curve(curve) })
 }
 
-fn of_gamma(gamma: ScaledFloat) -> Curve {
+/// `None`: a broken chunk, which is passed over.
+fn of_gamma(gamma: ScaledFloat) -> Option<Curve> {
     let gamma = f64::from(gamma.into_scaled()) / 100_000.0;
-    if (gamma - SRGB_GAMMA).abs() < GAMMA_ROUNDING { Curve::Srgb } else { Curve::Power(1.0 / gamma) }
+    let is_srgb = (gamma - SRGB_GAMMA).abs() < GAMMA_ROUNDING;
+    GAMMAS.contains(&gamma).then(|| if is_srgb { Curve::Srgb } else { Curve::Power(1.0 / gamma) })
 }
 
 fn primaries_of(places: SourceChromaticities) -> Primaries {

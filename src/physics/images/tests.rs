@@ -4,7 +4,7 @@
 use super::*;
 use crate::physics::integrator::{Method, step, step_limit};
 use crate::physics::metric::chart;
-use crate::random::mix;
+use crate::random::{mix, runs_all};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::time::Instant;
@@ -110,7 +110,7 @@ fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
 
 /// The number of random cases: `all` in `tests/run all`, else a tenth.
 fn count(all: usize) -> usize {
-    if std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1") { all } else { all / 10 }
+    if runs_all() { all } else { all / 10 }
 }
 
 const SPINS: [f64; 4] = [0.5, 0.9, -0.998, 0.999];

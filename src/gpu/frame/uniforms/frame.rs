@@ -2,9 +2,10 @@
 //! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
+use super::band::BandUniform;
 use super::matter::{MatterUniform, uniforms_of};
 use crate::emit::Emitters;
-use crate::emit::bands::{Bands, MOST_BANDS};
+use crate::emit::bands::MOST_BANDS;
 use crate::emit::half::Evenness;
 use crate::emit::thin_disk::SoftEdges;
 use crate::error::Result;
@@ -100,7 +101,7 @@ pub struct FrameUniform {
     occluder_origin: [f32; 2],
     hole_mass: f32,
     occluder_lensed: f32,
-    bands: [[u32; 4]; MOST_BANDS],
+    bands: [BandUniform; MOST_BANDS],
     depth_u: [f32; 2],
     matter_count: u32,
     matter_delay: f32,
@@ -166,14 +167,6 @@ fn padded(v: DVec3) -> Vec4 {
 /// An interval of 1/r; (1, 0), which nothing lies in, for none.
 fn range(u: Option<[f64; 2]>) -> [f32; 2] {
     u.map_or([1.0, 0.0], |u| u.map(|u| u as f32))
-}
-
-/// Bands as `bands.wgsl` has them; beyond the last one it goes on.
-pub(in crate::gpu) fn bands(bands: &Bands) -> [[u32; 4]; MOST_BANDS] {
-    std::array::from_fn(|i| {
-        let band = bands.band(bands.first + i as i32);
-        [(band.age as f32).to_bits(), (band.spacing as f32).to_bits(), band.generation, (band.drift as f32).to_bits()]
-    })
 }
 
 /// Light that need not be told exactly at half resolution, and the tolerance there; 0 without.
@@ -284,7 +277,7 @@ impl FrameUniform {
             occluder_origin: occluder.map_or([0.0; 2], |occluder| occluder.origin.map(|v| v as f32)),
             hole_mass: occluder.map_or(1.0, |_| scene.hole.mass as f32),
             occluder_lensed: f32::from(occluder.is_some_and(|occluder| occluder.lensed)),
-            bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),
+            bands: turbulence.map_or([BandUniform::zeroed(); MOST_BANDS], |t| BandUniform::all(&t.bands)),
             depth_u: range(emitters.depth_u()),
             matter_count,
             matter_delay: emitters.volumes.when.reference_delay as f32,

@@ -4,5 +4,6 @@
 pub(in crate::gpu) mod matter;
 pub(in crate::gpu) mod outputs;
 pub(in crate::gpu) mod rays;
+pub(in crate::gpu) mod band;
 pub(in crate::gpu) mod frame;
 pub(in crate::gpu) mod clouds;
