@@ -96,7 +96,9 @@ fn bytes_do_not_depend_on_how_they_are_made() {
 /// OpenGL, of which Mesa's software driver stands for all.
 #[test]
 fn gl_and_cpu_pictures_agree() {
-    for (name, set) in SCENES {
+    // Everyday those that have the most in them: what bloom is made of, Vulkan's pictures test in every scene.
+    for (name, set) in SCENES.into_iter().enumerate().filter(|(i, _)| runs_all() || [1, 4, 5].contains(i)).map(|s| s.1)
+    {
         let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
             let mut renderer = plain(RendererOptions { backend: Some(backend), ..Default::default() });
             set(&mut renderer.scene);

@@ -3,6 +3,7 @@
 //! they leave, against the curves of bhr's rays.
 
 use crate::frames::{both, floats, gpu, picture};
+use crate::random::runs_all;
 use bhr::image::{ImageRef, PixelFormat, memory::Layout};
 use bhr::scene::project::{Projected, ProjectedPoint};
 use bhr::scene::{Camera, Crossing, Hit, LensTables, Occluder, Projection, Scene};
@@ -94,7 +95,9 @@ fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
             let seen = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
             renderer.set_occluder(None);
             let (mut hidden, mut shown, mut off) = (0, 0, 0);
-            for i in (0..SIZE[0] * SIZE[1]).filter(|i| distances[*i as usize].is_finite()) {
+            // Everyday every third pixel: paths take longer than pixels.
+            let step = if runs_all() { 1 } else { 3 };
+            for i in (0..SIZE[0] * SIZE[1]).step_by(step).filter(|i| distances[*i as usize].is_finite()) {
                 let [x, y] = pixel(i);
                 let ray = scene.camera_ray(SIZE[0], SIZE[1], None, x, y).unwrap();
                 let path = renderer.trace_path(&ray, 4096).unwrap();
@@ -116,7 +119,7 @@ fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
                 off += usize::from(seen[4 * i as usize + 3] != alpha);
             }
             println!("{name}, spin {spin}, {tables:?}: {shown} of the disk, {hidden} of things, {off} pixels off");
-            assert!(shown > 80 && hidden > 300, "{name}, spin {spin}: {shown} {hidden}");
+            assert!(shown * step > 80 && hidden * step > 300, "{name}, spin {spin}: {shown} {hidden}");
             // Pixels on outlines and on edges of the disk may be off.
             assert!(off * 100 < shown + hidden, "{name}, spin {spin}, {tables:?}: {off} of {}", shown + hidden);
         }
