@@ -237,7 +237,9 @@ fn the_brightest_light_stays_in_bounds() {
 
 #[test]
 fn a_4k_frame_takes_at_most_400_mb() {
-    for spin in [0.0, 0.9] {
+    // Everyday the hole whose tables are the larger ones.
+    let spins = [0.9, 0.0];
+    for spin in spins.into_iter().take(if runs_all() { 2 } else { 1 }) {
         let mut renderer = new_gpu();
         (renderer.scene.hole.spin, renderer.scene.film.bloom) = (spin, 0.5);
         picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160]);

@@ -164,7 +164,6 @@ fn table_frames_at_the_extremes() {
             [matter.outer_radius, matter.opacity, matter.turbulence] = disk;
             let case = || format!("scene {scene} spin {spin} mass {mass} disk {disk:?} {tables:?} {camera:?}");
             let records = renderer.ray_records(width, height).unwrap_or_else(|e| panic!("{e}: {}", case()));
-            println!("{}", case());
             let bad = records.iter().enumerate().find(|(_, record)| !is_sound(record));
             assert!(bad.is_none(), "{} {}: {bad:?}", renderer.adapter().name, case());
         }

@@ -71,7 +71,9 @@ const SIZE: [u32; 2] = [160, 90];
 fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
     let spheres =
         [(DVec3::new(3.0, -9.0, 2.5), 1.2), (DVec3::new(-7.0, -3.0, 0.2), 1.6), (DVec3::new(1.0, 11.0, 4.0), 3.0)];
-    for (spin, tables) in [(0.0, LensTables::Always), (0.9, LensTables::Always), (0.9, LensTables::Never)] {
+    // Everyday each spin in one way: the cut is by distance along the ray, however the ray is found.
+    let ways = [(0.0, LensTables::Always), (0.9, LensTables::Never), (0.9, LensTables::Always)];
+    for (spin, tables) in ways.into_iter().take(if runs_all() { 3 } else { 2 }) {
         let mut scene = Scene::plain();
         let position = DVec3::new(0.0, -16.0, 3.0);
         scene.hole.spin = spin;

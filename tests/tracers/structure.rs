@@ -164,7 +164,7 @@ fn layers_leave_no_ripples() {
 #[test]
 fn films_do_not_crawl() {
     // Everyday, a few frames of one film.
-    let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (4, [48, 27], 1) };
+    let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (3, [48, 27], 1) };
     let mut renderer = gpu();
     let thick = Volume { thickness: 0.14, absorption: 0.3, inner_radius: 2.55, ..Volume::default() };
     let scenes = [("soft disk", 6.5, Volume::default()), ("thick disk", 10.0, thick)];
