@@ -64,7 +64,7 @@ fn frames_list_every_kernel_that_they_run() {
     let mut renderer = renderer();
     // Opening the device makes one by itself.
     let at_first = missing(&renderer)[1];
-    // Everyday some changes come together, as their kernels are others than those of each, and frames list by one rule.
+    // Everyday some changes come two at a time: a frame that lists too few kernels for one of them does so for both.
     let everyday = [1, 4, 7, 9, 11, 12, 14, 15];
     let mut frames = 0;
     for (index, change) in CHANGES.iter().enumerate() {
