@@ -96,7 +96,9 @@ fn bytes_do_not_depend_on_how_they_are_made() {
 /// OpenGL, of which Mesa's software driver stands for all.
 #[test]
 fn gl_and_cpu_pictures_agree() {
-    for (name, set) in SCENES {
+    // Everyday those that have the most in them: what bloom is made of, Vulkan's pictures test in every scene.
+    for (name, set) in SCENES.into_iter().enumerate().filter(|(i, _)| runs_all() || [1, 4, 5].contains(i)).map(|s| s.1)
+    {
         let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
             let mut renderer = plain(RendererOptions { backend: Some(backend), ..Default::default() });
             set(&mut renderer.scene);
@@ -235,7 +237,9 @@ fn the_brightest_light_stays_in_bounds() {
 
 #[test]
 fn a_4k_frame_takes_at_most_400_mb() {
-    for spin in [0.0, 0.9] {
+    // Everyday the hole whose tables are the larger ones.
+    let spins = [0.9, 0.0];
+    for spin in spins.into_iter().take(if runs_all() { 2 } else { 1 }) {
         let mut renderer = new_gpu();
         (renderer.scene.hole.spin, renderer.scene.film.bloom) = (spin, 0.5);
         picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160]);

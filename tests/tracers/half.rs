@@ -6,7 +6,7 @@ use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
 use crate::random::runs_all;
 use crate::volumes::one_of_each;
 use bhr::image::PixelFormat;
-use bhr::scene::{Camera, Disk, HotSpot, Projection, Scene, Sky, View, Volume, VolumeResolution};
+use bhr::scene::{Camera, Disk, HotSpot, Projection, Region, Scene, Sky, View, Volume, VolumeResolution};
 use glam::DVec3;
 
 fn outside(distance: f64, elevation: f64, tan: f64) -> Camera {
@@ -83,13 +83,17 @@ fn errors(exact: &[f32], found: &[f32]) -> Vec<f32> {
 #[test]
 fn half_is_as_full_within_its_bound() {
     let mut renderer = cpu();
-    // The bounds hold at this size; `the_tracers_agree` holds every scene to them in 8 bits.
+    // The bounds hold at this size: everyday in the middle of it, where the matter is. `the_tracers_agree` holds every
+    // scene to them in 8 bits.
+    let [full_width, full_height] = [320, 180];
+    let middle = Region { full_width, full_height, x: 120, y: 70 };
+    let (size, region) = if runs_all() { ([full_width, full_height], None) } else { ([80, 40], Some(middle)) };
     let everyday = ["halo beside a thin disk", "spots", "turbulent torus"];
     for (name, scene) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
         let bare = Scene { sky: Sky::black(), ..scene };
         let [full, found] = [bare.clone(), half(&bare)].map(|scene| {
             renderer.scene = scene;
-            floats(&picture(&mut renderer, PixelFormat::Rgba32F, [320, 180], None, true))
+            floats(&picture(&mut renderer, PixelFormat::Rgba32F, size, region, true))
         });
         let errors = errors(&full, &found);
         let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
@@ -103,15 +107,17 @@ fn half_is_as_full_within_its_bound() {
 }
 
 /// In 8 bits one tracer is as the other at half resolution, and both are as they are at full resolution, but for
-/// structure, which may be finer than a block.
+/// structure, which may be finer than a block. Everyday in the middle of the frame, where the matter is.
 #[test]
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     for (name, scene) in scenes() {
-        let size = [160, 90];
+        let [full_width, full_height] = [160, 90];
+        let middle = Region { full_width, full_height, x: 40, y: 30 };
+        let (size, region) = if runs_all() { ([full_width, full_height], None) } else { ([80, 30], Some(middle)) };
         let shown = |renderer: &mut Lent, scene: Scene| {
             renderer.scene = scene;
-            picture(renderer, PixelFormat::Rgba8Srgb, size, None, false)
+            picture(renderer, PixelFormat::Rgba8Srgb, size, region, false)
         };
         let full = shown(&mut cpu, scene.clone());
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| shown(renderer, half(&scene)));
@@ -125,12 +131,16 @@ fn the_tracers_agree() {
     }
 }
 
-/// I_nu and optical depth are told within the tolerance as well, by both tracers.
+/// I_nu and optical depth are told within the tolerance as well, by both tracers. Everyday by one tracer for each
+/// shape and view, because they are told of the same sums.
 #[test]
 fn views_are_within_the_bound() {
-    for (tracer, mut renderer) in both() {
-        for (name, scene) in scenes().into_iter().take(4) {
-            for view in [View::OpticalDepth, View::Intensity] {
+    for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
+        for (j, (name, scene)) in scenes().into_iter().take(4).enumerate() {
+            for (k, view) in [View::OpticalDepth, View::Intensity].into_iter().enumerate() {
+                if !runs_all() && (i + j + k) % 2 == 1 {
+                    continue;
+                }
                 let scene = Scene { view, ..scene.clone() };
                 let [full, found] = [scene.clone(), half(&scene)].map(|scene| {
                     renderer.scene = scene;
@@ -147,10 +157,10 @@ fn views_are_within_the_bound() {
 
 /// Blocks are counted from the frame's corner: parts of it, and frames after other frames, have the same bytes. So have
 /// frames without matter, whatever its resolution. Everyday one scene for each way to sum matter and to see it, because
-/// blocks know nothing of shapes.
+/// blocks know nothing of shapes; and one of them again, because each part is a frame after others.
 #[test]
 fn parts_have_the_bytes_of_the_whole() {
-    let size = if runs_all() { [101, 67] } else { [61, 41] };
+    let size = if runs_all() { [101, 67] } else { [51, 35] };
     for (tracer, mut renderer) in both() {
         let everyday = ["torus", "halo beside a thin disk", "fisheye", "turbulent torus"];
         for (name, scene) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
@@ -161,8 +171,10 @@ fn parts_have_the_bytes_of_the_whole() {
             renderer.scene = scene;
             let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
             assert!(whole == tiled(&mut renderer, PixelFormat::Rgba8Srgb, size), "{tracer}, {name}: parts");
-            let again = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
-            assert!(whole == again, "{tracer}, {name}: again");
+            if runs_all() || name == "fisheye" {
+                let again = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
+                assert!(whole == again, "{tracer}, {name}: again");
+            }
         }
         let empty = Scene { disk: Some(Disk::plain()), ..Scene::plain() };
         let [full, found] = [empty.clone(), half(&empty)].map(|scene| {
@@ -179,9 +191,10 @@ fn parts_have_the_bytes_of_the_whole() {
 fn long_lists_are_seen_through() {
     let mut gpu = gpu();
     let (_, scene) = scenes().remove(1);
+    let size = if runs_all() { [640, 360] } else { [448, 252] };
     let frames = [scene.clone(), half(&scene)].map(|scene| {
         gpu.scene = scene;
-        let [first, next] = [(); 2].map(|()| picture(&mut gpu, PixelFormat::Rgba8Srgb, [640, 360], None, false));
+        let [first, next] = [(); 2].map(|()| picture(&mut gpu, PixelFormat::Rgba8Srgb, size, None, false));
         assert!(first == next, "two frames of one scene differ by {} pixels", differing(&first, &next));
         first
     });

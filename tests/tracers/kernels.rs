@@ -64,10 +64,17 @@ fn frames_list_every_kernel_that_they_run() {
     let mut renderer = renderer();
     // Opening the device makes one by itself.
     let at_first = missing(&renderer)[1];
+    // Everyday some changes come two at a time: a frame that lists too few kernels for one of them does so for both.
+    let everyday = [1, 4, 7, 9, 11, 12, 14, 15];
+    let mut frames = 0;
     for (index, change) in CHANGES.iter().enumerate() {
         change(&mut renderer.scene);
+        if !runs_all() && !everyday.contains(&index) {
+            continue;
+        }
+        frames += 1;
         // Both ways in `tests/run all`, else in turn: a kernel takes lavapipe a second.
-        for mapped in [false, true].into_iter().filter(|mapped| runs_all() || *mapped == (index % 2 == 0)) {
+        for mapped in [false, true].into_iter().filter(|mapped| runs_all() || *mapped == (frames % 2 == 0)) {
             renderer.scene.quality.mapped_pixels = Some(mapped);
             render(&mut renderer, PixelFormat::Rgba8Srgb);
             assert_eq!(missing(&renderer)[1], at_first, "change {index}, mapped {mapped}");
@@ -82,6 +89,10 @@ fn after_prepare_frames_wait_for_no_pipeline() {
     renderer.scene.quality.anticipates = Some(false);
     for (index, change) in CHANGES.iter().enumerate().filter(|(index, _)| [1, 3, 4, 7].contains(index)) {
         change(&mut renderer.scene);
+        // Everyday two changes at a time.
+        if !runs_all() && [1, 4].contains(&index) {
+            continue;
+        }
         assert!(missing_in_window(&renderer, SIZE) > 0, "change {index}");
         renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None, &mut |_| true).unwrap();
         assert_eq!(missing_in_window(&renderer, SIZE), 0, "change {index}");
@@ -117,14 +128,19 @@ fn windows_are_prepared_at_the_scale_of_their_quality() {
 #[test]
 fn what_a_host_changes_next_is_made_in_the_background() {
     // One renderer each for formats and for scenes, as a software driver keeps few kernels.
+    // Everyday without what the next renderer shows.
     let formats = [PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
-    next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }));
+    let everyday = |format: &PixelFormat| *format != PixelFormat::Rgba16F;
+    let formats = formats.into_iter().filter(|format| runs_all() || everyday(format));
+    next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }).collect::<Vec<_>>());
     // There and back.
     next_frames(&[
         (|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Rgba16F),
         (|_| (), PixelFormat::Rgba8Srgb),
     ]);
-    next_frames(&[(|_| (), PixelFormat::Rgba16F), (|_| (), PixelFormat::Rgba8Srgb)]);
+    if runs_all() {
+        next_frames(&[(|_| (), PixelFormat::Rgba16F), (|_| (), PixelFormat::Rgba8Srgb)]);
+    }
     let scenes: [Change; 3] = [CHANGES[1], CHANGES[3], |scene| scene.view = View::Order];
     next_frames(&scenes.map(|change| (change, PixelFormat::Rgba8Srgb)));
 }

@@ -3,6 +3,7 @@
 //! they leave, against the curves of bhr's rays.
 
 use crate::frames::{both, floats, gpu, picture};
+use crate::random::runs_all;
 use bhr::image::{ImageRef, PixelFormat, memory::Layout};
 use bhr::scene::project::{Projected, ProjectedPoint};
 use bhr::scene::{Camera, Crossing, Hit, LensTables, Occluder, Projection, Scene};
@@ -70,7 +71,9 @@ const SIZE: [u32; 2] = [160, 90];
 fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
     let spheres =
         [(DVec3::new(3.0, -9.0, 2.5), 1.2), (DVec3::new(-7.0, -3.0, 0.2), 1.6), (DVec3::new(1.0, 11.0, 4.0), 3.0)];
-    for (spin, tables) in [(0.0, LensTables::Always), (0.9, LensTables::Always), (0.9, LensTables::Never)] {
+    // Everyday each spin in one way: the cut is by distance along the ray, however the ray is found.
+    let ways = [(0.0, LensTables::Always), (0.9, LensTables::Never), (0.9, LensTables::Always)];
+    for (spin, tables) in ways.into_iter().take(if runs_all() { 3 } else { 2 }) {
         let mut scene = Scene::plain();
         let position = DVec3::new(0.0, -16.0, 3.0);
         scene.hole.spin = spin;
@@ -94,7 +97,9 @@ fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
             let seen = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
             renderer.set_occluder(None);
             let (mut hidden, mut shown, mut off) = (0, 0, 0);
-            for i in (0..SIZE[0] * SIZE[1]).filter(|i| distances[*i as usize].is_finite()) {
+            // Everyday every third pixel: paths take longer than pixels.
+            let step = if runs_all() { 1 } else { 3 };
+            for i in (0..SIZE[0] * SIZE[1]).step_by(step).filter(|i| distances[*i as usize].is_finite()) {
                 let [x, y] = pixel(i);
                 let ray = scene.camera_ray(SIZE[0], SIZE[1], None, x, y).unwrap();
                 let path = renderer.trace_path(&ray, 4096).unwrap();
@@ -116,7 +121,7 @@ fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
                 off += usize::from(seen[4 * i as usize + 3] != alpha);
             }
             println!("{name}, spin {spin}, {tables:?}: {shown} of the disk, {hidden} of things, {off} pixels off");
-            assert!(shown > 80 && hidden > 300, "{name}, spin {spin}: {shown} {hidden}");
+            assert!(shown * step > 80 && hidden * step > 300, "{name}, spin {spin}: {shown} {hidden}");
             // Pixels on outlines and on edges of the disk may be off.
             assert!(off * 100 < shown + hidden, "{name}, spin {spin}, {tables:?}: {off} of {}", shown + hidden);
         }

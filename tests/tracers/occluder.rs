@@ -170,13 +170,15 @@ fn matter_with_depth_is_cut_at_the_distance() {
 /// depth lies before that place. That holds where light is bent by much, too.
 #[test]
 fn half_of_the_matter_lies_before_the_nearest_place() {
+    // Everyday in a smaller frame: rays are alike in each, and their paths take long.
+    let size = if runs_all() { SIZE } else { [60, 40] };
     for (name, mut renderer) in both() {
         renderer.scene = in_haze(haze(8.0, 0.02, 0.03));
         let position = DVec3::new(0.0, -100.0, 0.0);
         renderer.scene.camera = Camera { position, forward: -position, fov_y: 0.3, ..Camera::plain() };
-        let distances = (0..SIZE[0] * SIZE[1]).map(|i| {
-            let (x, y) = (f64::from(i % SIZE[0]) + 0.5, f64::from(i / SIZE[0]) + 0.5);
-            let ray = renderer.scene.camera_ray(SIZE[0], SIZE[1], None, x, y).unwrap();
+        let distances = (0..size[0] * size[1]).map(|i| {
+            let (x, y) = (f64::from(i % size[0]) + 0.5, f64::from(i / size[0]) + 0.5);
+            let ray = renderer.scene.camera_ray(size[0], size[1], None, x, y).unwrap();
             let path = renderer.trace_path(&ray, 4096).unwrap();
             let place = |p: &[f64; 4]| DVec3::new(p[0], p[1], p[2]);
             let places = path.iter().map(place).collect::<Vec<_>>();
@@ -192,10 +194,10 @@ fn half_of_the_matter_lies_before_the_nearest_place() {
             if nearest.length() > 5.5 { (nearest - position).length() as f32 } else { f32::INFINITY }
         });
         let distances = distances.collect::<Vec<_>>();
-        let plain = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
-        let halved = occluder(SIZE, |x, y| distances[(y * SIZE[0] + x) as usize]);
+        let plain = floats(&picture(&mut renderer, PixelFormat::Rgba32F, size, None, true));
+        let halved = occluder(size, |x, y| distances[(y * size[0] + x) as usize]);
         renderer.set_occluder(Some(Occluder { lensed: true, ..halved }));
-        let half = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
+        let half = floats(&picture(&mut renderer, PixelFormat::Rgba32F, size, None, true));
         renderer.set_occluder(None);
         let (mut compared, mut worst) = (0, 0.0_f32);
         let pixels = half.chunks_exact(4).zip(plain.chunks_exact(4)).zip(&distances);
@@ -204,13 +206,16 @@ fn half_of_the_matter_lies_before_the_nearest_place() {
             compared += 1;
         }
         println!("{name}: {compared} rays, half of the depth within {worst:.1e}");
-        assert!(compared > 5000 && worst < 5e-3, "{name}: {compared} {worst}");
+        assert!(compared * 96 > distances.len() * 50 && worst < 5e-3, "{name}: {compared} {worst}");
     }
 }
 
 /// Matter with and without structure, a spot and a disk behind things of any shape, edges refined: the tracers agree.
+/// Everyday in two of the four ways, in which each setting has each of its values.
 #[test]
 fn the_tracers_agree_about_matter_behind_things() {
+    // Everyday fewer pixels, with bounds for as many.
+    let (size, least, most) = if runs_all() { (SIZE, 1000, 60) } else { ([84, 56], 500, 30) };
     let shape = |x: u32, y: u32| match (x / 17 + y / 13) % 4 {
         0 => f32::INFINITY,
         1 => 60.0,
@@ -219,6 +224,8 @@ fn the_tracers_agree_about_matter_behind_things() {
     };
     for (spin, turbulence, lensed, half) in
         [(0.0, 0.0, false, false), (0.9, 0.0, true, false), (0.9, 1.0, true, true), (0.9, 1.0, false, false)]
+            .into_iter()
+            .step_by(if runs_all() { 1 } else { 2 })
     {
         let mut scene = scene(spin, LensTables::Never);
         scene.disk = (turbulence == 0.0).then_some(scene.disk).flatten();
@@ -230,15 +237,15 @@ fn the_tracers_agree_about_matter_behind_things() {
         scene.quality.volume_resolution = if half { VolumeResolution::Half } else { VolumeResolution::Full };
         let pictures = [cpu(), gpu()].map(|mut renderer| {
             renderer.scene = scene.clone();
-            let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
-            renderer.set_occluder(Some(Occluder { lensed, ..occluder(SIZE, shape) }));
-            let made = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
+            let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, true);
+            renderer.set_occluder(Some(Occluder { lensed, ..occluder(size, shape) }));
+            let made = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, true);
             renderer.set_occluder(None);
             (differing(&plain, &made), made)
         });
         let [(hidden, cpu), (_, gpu)] = pictures;
         let off = differing(&cpu, &gpu);
         println!("spin {spin}, turbulence {turbulence}, lensed {lensed}: {hidden} pixels hidden, {off} differ");
-        assert!(hidden > 1000 && off < 60, "spin {spin}, turbulence {turbulence}: {hidden} {off}");
+        assert!(hidden > least && off < most, "spin {spin}, turbulence {turbulence}: {hidden} {off}");
     }
 }

@@ -279,7 +279,7 @@ fn tiles_and_repetitions_give_the_same_bytes() {
 #[test]
 fn tables_give_the_same_bytes() {
     let format = PixelFormat::Rgba8Srgb;
-    let (small, size) = ([40, 30], [210, 140]);
+    let (small, size) = ([40, 30], if runs_all() { [210, 140] } else { [120, 80] });
     let observers = [
         (0.0, camera(12.0, 70.0, 60.0, Motion::Static)),
         (0.9, camera(12.0, 70.0, 60.0, Motion::Static)),
@@ -470,7 +470,8 @@ fn shadow_sine(r: f64) -> f64 {
     (27.0 * (r - 2.0) / r.powi(3)).sqrt()
 }
 
-/// From 10^5 M the silhouette of a spinning hole is Bardeen's curve, of the reference values, to half a pixel.
+/// From 10^5 M the silhouette of a spinning hole is Bardeen's curve, of the reference values, to half a pixel. Everyday
+/// each curve on one tracer, by turns.
 #[test]
 fn spinning_shadow_is_bardeens_curve() {
     let text = std::fs::read_to_string("tests/golden/kerr_shadow.json").unwrap();
@@ -479,8 +480,11 @@ fn spinning_shadow_is_bardeens_curve() {
     // The frame is 16 M wide.
     let fov = 2.0 * (8.0_f64 / r).atan();
     let mut judged = 0;
-    for (tracer, mut renderer) in both() {
-        for case in file["cases"].as_array().unwrap() {
+    for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
+        for (j, case) in file["cases"].as_array().unwrap().iter().enumerate() {
+            if !runs_all() && i != j % 2 {
+                continue;
+            }
             let (a, inclination) = (case["a"].as_f64().unwrap(), case["inclination_deg"].as_f64().unwrap());
             renderer.scene.hole.spin = a;
             renderer.scene.camera = camera(r, inclination, fov.to_degrees(), Motion::Static);

@@ -133,8 +133,12 @@ fn pixels_show_about_what_many_rays_find() {
 /// near to what rays find that are summed in fine cells.
 #[test]
 fn layers_leave_no_ripples() {
-    for (tracer, mut renderer) in both() {
-        for (x, y) in [(300, 700), (1100, 560), (500, 400)] {
+    for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
+        for (j, (x, y)) in [(300, 700), (1100, 560), (500, 400)].into_iter().enumerate() {
+            // Everyday each part by one tracer: layers are chosen by one rule, and pictures of both are compared.
+            if !runs_all() && (i + j) % 2 == 1 {
+                continue;
+            }
             let mut scene = alone(6.5, Volume::default());
             scene.camera.forward = -scene.camera.position;
             let region = Region { full_width: 1920, full_height: 1080, x, y };
@@ -160,7 +164,7 @@ fn layers_leave_no_ripples() {
 #[test]
 fn films_do_not_crawl() {
     // Everyday, a few frames of one film.
-    let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (5, [64, 36], 1) };
+    let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (3, [48, 27], 1) };
     let mut renderer = gpu();
     let thick = Volume { thickness: 0.14, absorption: 0.3, inner_radius: 2.55, ..Volume::default() };
     let scenes = [("soft disk", 6.5, Volume::default()), ("thick disk", 10.0, thick)];

@@ -22,7 +22,7 @@ fn footprints_agree_with_differences() {
     let mut random = Random(29);
     // The footprints by tracer, and by whether the record was looked up or integrated.
     let mut found: [[Footprints; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 10, 1000) {
         let mut scene = random_observer(&mut random, index);
         scene.disk.as_mut().unwrap().turbulence = 1.0;
         let edge = shadow_edge(&scene, &mut random);

@@ -3,6 +3,7 @@
 //! angular momentum, and as distant disks show it.
 
 use super::{both, camera, hits, light, luminance, neighbours, view, whole};
+use crate::random::runs_all;
 use bhr::physics::limb_darkening::limb_darkening;
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Disk, DiskReference, EmissionLaw, LensTables, Method, Motion, Ray, View};
@@ -37,9 +38,14 @@ fn each_pixel_is_as_bright_as_its_angle_in_the_matters_frame_says() {
         (LensTables::Never, Method::Rk4),
         (LensTables::Never, Method::Adaptive),
     ];
-    for (number, seen_from) in cameras.into_iter().enumerate() {
-        for (tracer, mut renderer) in both() {
-            for (tables, method) in ways {
+    for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
+        // Cameras innermost: a software driver keeps few kernels.
+        for (j, (tables, method)) in ways.into_iter().enumerate() {
+            for (number, seen_from) in cameras.into_iter().enumerate() {
+                // Everyday each camera and way by one tracer: angles are of records, which both find in each way.
+                if !runs_all() && (i + j + number) % 2 == 1 {
+                    continue;
+                }
                 renderer.scene.camera = seen_from;
                 renderer.scene.disk = Some(Disk::plain());
                 renderer.scene.quality.refines = false;
