@@ -125,7 +125,9 @@ fn the_tracers_agree() {
             let far = one.iter().zip(other).filter(|(one, other)| one.abs_diff(**other) > 2).count();
             println!("{name}, {what}: {far} of {}", one.len());
             let coarse = name.starts_with("turbulent") && what != "the tracers";
-            let most = if coarse { one.len() / 25 } else { one.len() / 1000 };
+            // Outside the middle there are few pixels that differ.
+            let share = if runs_all() { 1000 } else { 500 };
+            let most = if coarse { one.len() / 25 } else { one.len() / share };
             assert!(far <= most, "{name}, {what}: {far} of {}", one.len());
         }
     }

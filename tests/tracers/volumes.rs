@@ -176,7 +176,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     let mut worst = Vec::new();
-    let size = if runs_all() { [128, 72] } else { [80, 45] };
+    let size = if runs_all() { [128, 72] } else { [96, 54] };
     for (name, scene) in scenes() {
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| {
             renderer.scene = scene.clone();
