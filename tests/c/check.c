@@ -44,6 +44,11 @@ int check_end(void) {
     return failed_count == 0 && passed_count > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+int check_runs_all(void) {
+    const char *all = getenv("BHR_TESTS_ALL");
+    return all != NULL && strcmp(all, "1") == 0;
+}
+
 void check_set_sky(BhrContext *context) {
     BhrSky sky;
     if (getenv("CHECK_WITHOUT_MILKY_WAY") != NULL && CHECK_OK(bhr_sky_init(&sky, sizeof sky))) {

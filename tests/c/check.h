@@ -21,6 +21,8 @@ BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no
 int         check_end(void);                    /* prints the count; the exit status of main */
 BhrContext *check_context(BhrBackend backend);  /* a new one, silent, with a plain scene; ends the program else */
 
+int check_runs_all(void); /* whether this is tests/run all: BHR_TESTS_ALL=1 in the environment */
+
 BhrContextOptions check_options(BhrBackend backend); /* the defaults, with this backend */
 BhrContext       *check_context_with(const BhrContextOptions *options); /* as check_context */
 
