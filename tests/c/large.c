@@ -11,8 +11,6 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#define SIDE 8192u
-#define MAX_ABOVE_BUFFER 600000000LL
 #define WIDE 16384u
 
 static long long peak_resident_bytes(void) {
@@ -31,25 +29,28 @@ static void cheap_scene(BhrContext *context) {
     CHECK_OK(bhr_set_sky(context, NULL));
 }
 
-/* First in the process: the peak is of all that came before, too. */
-static void peak_memory(BhrContext *context) {
-    const uint64_t bytes = (uint64_t)SIDE * SIDE * 4;
+/* First in the process: the peak is of all that came before, too. Everyday the frame is 4096 x 4096, whose light in
+ * single precision, 268 MB, is too much in any case; lavapipe itself holds 340 MB. */
+static void peak_memory(BhrContext *context, BhrBackend backend) {
+    const uint32_t  side = check_runs_all() ? 8192 : 4096;
+    const long long most = check_runs_all() ? 600000000 : backend == BHR_BACKEND_CPU ? 220000000 : 520000000;
+    const uint64_t bytes = (uint64_t)side * side * 4;
     unsigned char *pixels = malloc(bytes);
     if (!CHECK(pixels != NULL, "no %llu bytes for the host's buffer", (unsigned long long)bytes)) {
         return;
     }
     memset(pixels, UNTOUCHED, bytes); /* resident before the render, so that it is not counted as the library's */
-    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, bytes);
+    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, side, side, pixels, bytes);
     CHECK_OK(bhr_render_image(context, &image));
     const long long peak = peak_resident_bytes(), above = peak - (long long)bytes;
-    printf("%u x %u: peak %lld MB, %lld MB above the buffer\n", SIDE, SIDE, peak / 1000000, above / 1000000);
-    CHECK(peak > (long long)bytes && above <= MAX_ABOVE_BUFFER, "%lld bytes above the buffer", above);
+    printf("%u x %u: peak %lld MB, %lld MB above the buffer\n", side, side, peak / 1000000, above / 1000000);
+    CHECK(peak > (long long)bytes && above <= most, "%lld bytes above the buffer", above);
     size_t opaque = 0;
     for (uint64_t i = 3; i < bytes; i += 4) {
         opaque += pixels[i] == 255;
     }
-    CHECK(opaque == (size_t)SIDE * SIDE, "%llu of %llu pixels were written", (unsigned long long)opaque,
-          (unsigned long long)SIDE * SIDE);
+    CHECK(opaque == (size_t)side * side, "%llu of %llu pixels were written", (unsigned long long)opaque,
+          (unsigned long long)side * side);
     free(pixels);
 }
 
@@ -82,7 +83,7 @@ int main(int argc, char **argv) {
     if (backend == BHR_BACKEND_CPU) {
         cheap_scene(context);
     }
-    peak_memory(context);
+    peak_memory(context, backend);
     bhr_context_destroy(context);
     context = check_context(backend);
     wide_region(context);
