@@ -189,7 +189,7 @@ static void descriptors(void) {
     BhrTargetOptions options = options_of(2, BHR_TARGET_BUFFER, 0);
     int              before = open_descriptors();
     BhrFrameStats    first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < (check_runs_all() ? 60 : 24); i++) {
         BhrTarget *target, *again;
         BhrHandle  handle;
         BhrTargetInfo info = {.struct_size = sizeof info};
@@ -248,7 +248,7 @@ int main(int argc, char **argv) {
     }
     CHECK_OK(bhr_set_region(context, NULL));
     far_rows();
-    many_frames(100);
+    many_frames(check_runs_all() ? 100 : 30);
     descriptors();
     return share_end();
 }
