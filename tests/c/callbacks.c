@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* callbacks.c -- the host's functions that the library calls: progress that watches, cancels or calls back in, and
- * the log. A refused call from inside leaves the frame in progress and the context as they were. */
+ * the log. A refused call from inside leaves the frame in progress and the context as they were.
+ *
+ * A second argument "brief" is for valgrind: it leaves out large frames and frames of many samples. */
 #include "check.h"
 
 #include <math.h>
@@ -277,11 +279,14 @@ static void software_asks_after_each_sample(BhrContext *context) {
 
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
+    const int        brief = argc > 2 && strcmp(argv[2], "brief") == 0;
     BhrContext      *context = check_context(backend);
     progress_from_inside(context);
     cancel_at_once(context);
-    cancel_in_the_middle(context);
-    software_asks_after_each_sample(context);
+    if (!brief) {
+        cancel_in_the_middle(context);
+        software_asks_after_each_sample(context);
+    }
     bhr_context_destroy(context);
     check_log(backend, BHR_LOG_OFF, 0);
     check_log(backend, BHR_LOG_ERROR, 0);

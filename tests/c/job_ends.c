@@ -388,9 +388,9 @@ int main(int argc, char **argv) {
     const int        small = brief || (argc > 2 && strcmp(argv[2], "small") == 0);
     BhrContext      *context = check_context(backend);
     if (small) {
-        slow_samples = 16;
+        slow_samples = brief ? 4 : 16;
     }
-    render_expected(context);
+    render_expected(context, brief ? 3 : FLIGHT);
     if (!brief) {
         timeouts(context);
         two_waiters(context);

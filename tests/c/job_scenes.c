@@ -75,8 +75,8 @@ void set_scene(BhrContext *context, int index) {
     CHECK_OK(bhr_set_view(context, index == 7 ? BHR_VIEW_ORDER : BHR_VIEW_LIGHT));
 }
 
-void render_expected(BhrContext *context) {
-    for (int i = 0; i < FLIGHT; i++) {
+void render_expected(BhrContext *context, int count) {
+    for (int i = 0; i < count; i++) {
         const BhrImage target = frame_of(expected[i]);
         set_scene(context, i);
         CHECK_OK(bhr_render_image(context, &target));

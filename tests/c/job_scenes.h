@@ -36,7 +36,7 @@ void     end_slow(BhrJob *job);
 
 /* One of the scenes, 0 to FLIGHT - 1. */
 void set_scene(BhrContext *context, int index);
-void render_expected(BhrContext *context);
+void render_expected(BhrContext *context, int count); /* the first scenes */
 void check_frame(int index); /* got is as expected */
 
 #endif

@@ -302,7 +302,7 @@ int main(int argc, char **argv) {
     if (argc > 2 && strcmp(argv[2], "small") == 0) {
         slow_samples = 16;
     }
-    render_expected(context);
+    render_expected(context, FLIGHT);
     snapshots(context);
     mixed_ends(context);
     beside_frames(context);
