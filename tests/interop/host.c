@@ -41,7 +41,8 @@ static void unlock(void *user) {
 static int      stop;
 static unsigned submissions;
 
-/* Submits to the queue all the time, nothing: without a pause in `tests/run all`, everyday a thousand times a second. */
+/* Submits nothing to the queue, all the time: without a pause in `tests/run all`, everyday up to a thousand times a
+ * second. */
 static void *submit_always(void *nothing) {
     VkSubmitInfo empty = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO};
     for (int ends = 0; !ends;) {
@@ -199,8 +200,8 @@ static void binary_turns(BhrContext *context, BhrContext *own, size_t at) {
     released = 0;
 }
 
-/* Target, semaphore, job and context end in every order, in flight. Everyday in the first twelve, which have every step:
- * each of the four ends beside each set of the others. */
+/* Target, semaphore, job and context end in every order, in flight. Everyday in the first twelve, which have every
+ * step: each of the four ends beside each set of the others. */
 static void orders(void) {
     static const char *const list[] = {"tsjc", "stcj", "jtcs", "csjt", "tjsc", "tcsj", "sjtc", "sctj", "jsct", "jcts",
                                        "ctjs", "cjst", "tscj", "tjcs", "tcjs", "stjc", "sjct", "scjt", "jtsc", "jstc",

@@ -245,7 +245,8 @@ static int run_steps(BhrBackend backend, BhrWindowKind kind, int ignored) {
     for (;;) {
         int best = 0, most = -1;
         for (int i = 0; i < ORDERS; i++) {
-            const int news = 2 * ENDS * new_steps(orders[i], ignored, seen, 0) + new_steps(orders[i], ENDS, seen_all, 0);
+            const int news =
+                2 * ENDS * new_steps(orders[i], ignored, seen, 0) + new_steps(orders[i], ENDS, seen_all, 0);
             if (news > most) {
                 best = i, most = news;
             }

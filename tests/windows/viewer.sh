@@ -101,7 +101,7 @@ viewer_needs_display() {
 
 # Every kind of key: values, switches, what bhr refuses, motions, help; and the viewer goes on.
 viewer_takes_keys() {
-    viewer_open --size 320x180 || return 1
+    viewer_open --size 160x90 || return 1
     local key
     for key in Right x x 3 v v v v v v v v u j j n n n m p space period slash shift+t g bracketleft Up k i l l h; do
         xdotool key "$key" && sleep 0.1
@@ -120,14 +120,14 @@ viewer_takes_keys() {
 
 # A preset has the matter that --matter says, with auto the one that the rate allows, and the title says which.
 viewer_chooses_matter() {
-    viewer_open --size 160x90 --preset physical --matter deep &&
+    viewer_open --size 64x36 --preset physical --matter deep &&
         viewer_until 60 viewer_title_says 'physical, deep' || return 1
     xdotool key y && viewer_until 60 viewer_says 'preset: observatory, deep matter' || return 1
     xdotool key y && viewer_until 60 viewer_says 'preset: teaching, thin matter' &&
         viewer_until 60 viewer_title_says 'teaching, thin' && viewer_close || return 1
-    viewer_open --size 160x90 --preset physical --rate 0.01 &&
+    viewer_open --size 64x36 --preset physical --rate 0.01 &&
         viewer_until 60 viewer_title_says 'physical, deep' && viewer_close || return 1
-    viewer_open --size 160x90 --preset physical --rate 5e5 &&
+    viewer_open --size 64x36 --preset physical --rate 5e5 &&
         viewer_until 60 viewer_title_says 'physical, thin' && viewer_close
 }
 
