@@ -160,11 +160,32 @@ fn next_frames(changes: &[(Change, PixelFormat)]) {
     }
 }
 
+/// By how many steps of the format the values of pixels differ at most; for 32-bit floats, by how many of 16-bit ones'
+/// at that size, 2^-10 of it.
+fn steps_apart(format: PixelFormat, own: &[u8], any: &[u8]) -> f64 {
+    let pairs = |size: usize| own.chunks_exact(size).zip(any.chunks_exact(size));
+    let half = |bytes: &[u8]| f64::from(u16::from_le_bytes([bytes[0], bytes[1]]));
+    let float = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    let apart = |a: f64, b: f64| if a == b || (a.is_nan() && b.is_nan()) { 0.0 } else { (a - b).abs() };
+    match format {
+        PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => {
+            pairs(1).map(|(a, b)| apart(a[0].into(), b[0].into())).fold(0.0, f64::max)
+        }
+        PixelFormat::Rgba16F => pairs(2).map(|(a, b)| apart(half(a), half(b))).fold(0.0, f64::max),
+        PixelFormat::Rgba32F | PixelFormat::R32F => {
+            let relative = |a: f64, b: f64| 1024.0 * apart(a, b) / (a.abs().max(b.abs()) + 1e-4);
+            pairs(4).map(|(a, b)| relative(float(a), float(b))).fold(0.0, f64::max)
+        }
+    }
+}
+
 /// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own.
-/// Their pixels are the same.
+/// Their pixels are the same, but for what a driver's compiler rounds otherwise in another kernel: NVIDIA's joins
+/// multiplications with additions where it likes.
 #[test]
-fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
+fn a_kernel_for_any_film_and_projection_puts_the_same_pixels() {
     let mut renderer = renderer();
+    let exactly = renderer.adapter().software;
     let mut compared = 0;
     let mut compare = |scene: Change, format| {
         scene(&mut renderer.scene);
@@ -178,7 +199,10 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
             render(&mut renderer, format)
         });
         let scene = &renderer.scene;
-        assert!(own == any, "{format:?}, {:?}, {:?}, {:?}", scene.film.tone_map, scene.view, scene.camera.projection);
+        let (steps, differ) = (steps_apart(format, &own, &any), own.iter().zip(&any).filter(|(a, b)| a != b).count());
+        let name = format!("{format:?}, {:?}, {:?}", scene.film.tone_map, scene.view);
+        println!("{name}, {:?}: {differ} bytes differ, by {steps} steps", scene.camera.projection);
+        assert!(if exactly { differ == 0 } else { steps <= 1.0 }, "{name}, {:?}: {steps}", scene.camera.projection);
     };
     compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);

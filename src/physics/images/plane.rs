@@ -2,7 +2,7 @@
 //! Images of a point without spin, where a ray stays in a plane: one unknown, the angle from the hole that the observer
 //! looks at, and 1/r after a given angle falls steadily with it.
 
-use super::shooting::Aim;
+use super::shooting::{Aim, MOST_STEPS};
 use crate::physics::geodesic::State;
 use crate::physics::integrator::{held_inside, nystrom_step, step_limit};
 use crate::physics::observer::LocalFrame;
@@ -88,12 +88,14 @@ fn around(f: &impl Fn(f64) -> f64, guess: Option<f64>) -> [f64; 2] {
 }
 
 /// 1/r after the ray has swept an angle, less `u`; for rays that are captured or have escaped before, more or less than
-/// all others, by the angle that is left. It falls as the look direction turns away from the hole.
+/// all others, by the angle that is left. It falls as the look direction turns away from the hole. Rays that take more
+/// steps than any image's count as captured: an observer on the horizon has some with energies next to 0, whose steps
+/// are too short for 1/r to change.
 fn excess(frame: &LocalFrame, look: DVec3, swept: f64, u: f64, step: f64) -> f64 {
     let Some((c, start)) = frame.start(look) else { return 10.0 + swept + 1.0 - look.x };
     let rate = c.k.max(0.0).sqrt();
     let (mut state, mut left): (State, f64) = (start, swept);
-    loop {
+    for _ in 0..MOST_STEPS {
         let most = (step / c.scale).min(step_limit(&c, &state, step));
         let last = left <= 1.5 * most * rate;
         let h = if last { left / rate } else { most };
@@ -112,6 +114,7 @@ fn excess(frame: &LocalFrame, look: DVec3, swept: f64, u: f64, step: f64) -> f64
         left -= h * rate;
         state = next;
     }
+    0.5 + left
 }
 
 /// The root of a function that falls, within a range: Chandrupatla's method (1997, Advances in Engineering

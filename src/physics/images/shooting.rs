@@ -17,7 +17,7 @@ pub fn fine(order: u32, u: f64) -> f64 {
 }
 
 /// Most steps of a ray: beside the horizon they are small.
-const MOST_STEPS: usize = 4000;
+pub const MOST_STEPS: usize = 4000;
 
 /// A point that rays are to pass through.
 #[derive(Clone, Copy, Debug)]

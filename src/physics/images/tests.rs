@@ -160,6 +160,23 @@ fn images_are_reciprocal() {
     assert!(compared > 110, "{compared}");
 }
 
+/// Rays towards the hole have energies next to 0 there, and steps too short to go anywhere.
+#[test]
+fn observers_on_the_horizon_get_an_answer() {
+    let place = DVec3::new(1.0768800860838419, 1.6734582265113587, 0.19966683329365631);
+    for distance in [2.0, 2.0 * (1.0 - f64::EPSILON), 2.0 * (1.0 + f64::EPSILON), 2.0 + 1e-12] {
+        let Ok(frame) = LocalFrame::new(0.0, place.normalize() * distance) else { continue };
+        let begun = Instant::now();
+        for point in [DVec3::new(6.283186, 0.999, 3.14), DVec3::new(-3.0, 0.1, 0.0)] {
+            for order in 0..=HIGHEST_ORDER {
+                let found = image(&frame, point, order);
+                assert!(found.is_err() || found.is_ok_and(|image| image.look.is_normalized()), "r = {distance}");
+            }
+        }
+        assert!(begun.elapsed().as_secs() < 30, "r = {distance}: {:?}", begun.elapsed());
+    }
+}
+
 /// The lens equation of weak fields: with x the angle from the hole in Einstein radii, mu = 1/2 +- (x^2 + 2) / (2 x
 /// sqrt(x^2 + 4)) (Schneider, Ehlers & Falco 1992, chapter 2).
 #[test]
