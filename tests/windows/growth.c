@@ -132,7 +132,7 @@ int main(int argc, char **argv) {
     Host                host = host_open(kind, NULL, WIDTH, HEIGHT);
     BhrSurface         *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_IMMEDIATE);
     if (few) {
-        max_growth = 4L << 20; /* so that a frame's pixels that stay are too many after 600 frames, too */
+        max_growth = 4L << 20; /* the bound of thousands of frames would be met by no leak of some hundred */
     }
     present(context, surface, 0, warm_up);
     Holding before = look();
