@@ -270,9 +270,10 @@ static void cancel_large(BhrContext *context) {
     job = submit(context, &target);
     double    fraction = 0.0;
     BhrStatus status;
+    /* Up to 0.5 it may be of pixels that are only submitted. */
     do {
         status = bhr_job_wait(job, 100000, &fraction);
-    } while (status == BHR_NOT_READY && fraction < 0.3);
+    } while (status == BHR_NOT_READY && fraction < 0.55);
     bhr_job_cancel(job);
     check_mark_message();
     status = bhr_job_wait(job, FOR_EVER, NULL);
