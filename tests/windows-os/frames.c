@@ -70,7 +70,7 @@ int main(int argc, char **argv) {
     write_file(argv[2], "hits", hits, sizeof hits);
     if (argc > 3) compare(argv[3], hits, options.backend == BHR_BACKEND_CPU ? 1e-12 : 1e-5);
 
-    /* The same by a job. */
+    /* A job renders it again. */
     static unsigned char again[sizeof pixels];
     BhrJob              *job = NULL;
     image.pixels = again;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* loading.c -- a plugin's host: bhr.dll is loaded, used and freed, again and again. Links no bhr.
  *
- *     loading BHR.DLL BACKEND TIMES
+ *     loading BACKEND TIMES BHR.DLL [COPY.DLL]       with a copy, every other time that
  *
  * Between LoadLibrary and FreeLibrary a thread makes a context, renders a frame and destroys the context. The DLL must
  * stay mapped, as threads of its own and of drivers still run in it. A DLL of which no more than the version was asked
@@ -67,21 +67,21 @@ static void load(const char *path) {
 }
 
 int main(int argc, char **argv) {
-    if (argc != 4) return 2;
-    backend = !strcmp(argv[2], "cpu") ? BHR_BACKEND_CPU : !strcmp(argv[2], "vulkan") ? BHR_BACKEND_VULKAN
+    if (argc < 4) return 2;
+    backend = !strcmp(argv[1], "cpu") ? BHR_BACKEND_CPU : !strcmp(argv[1], "vulkan") ? BHR_BACKEND_VULKAN
                                                                                        : BHR_BACKEND_GL;
     int failed = 0;
 
     uint32_t (*abi)(void);
-    load(argv[1]);
+    load(argv[3]);
     find(&abi, "bhr_abi_version");
     const void *address = (const void *)library;
     failed |= abi() != BHR_ABI_VERSION || !FreeLibrary(library);
     if (is_mapped(address)) failed = 1, printf("unused, it stays\n");
 
-    int times = atoi(argv[3]);
+    int times = atoi(argv[2]);
     for (int i = 0; i < times; i++) {
-        load(argv[1]);
+        load(argv[argc > 4 && i % 2 == 1 ? 4 : 3]);
         address = (const void *)library;
         DWORD  status = 1;
         HANDLE thread = CreateThread(NULL, 0, uses_it, NULL, 0, NULL);
@@ -94,6 +94,6 @@ int main(int argc, char **argv) {
         if (!is_mapped(address)) failed = 1, printf("round %d: FreeLibrary has unmapped the library\n", i);
         fflush(stdout);
     }
-    printf("%s %d of %d rounds\n", argv[2], failed ? 0 : times, times);
+    printf("%s %d of %d rounds\n", argv[1], failed ? 0 : times, times);
     return failed;
 }

@@ -69,7 +69,7 @@ int main(int argc, char **argv) {
 
     int shown = frames(context, surface, 3);
     CHECK(shown == 3, "%d frames", shown);
-    /* The same frame in memory: the script compares the screen with it. */
+    /* This frame in memory, too: the script compares the screen with it. */
     static unsigned char pixels[480 * 300 * 4];
     BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, 480, 300, pixels, sizeof pixels);
     CHECK_OK(bhr_render_image(context, &image));
