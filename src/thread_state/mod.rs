@@ -23,7 +23,8 @@ thread_local! {
 
 /// A call of the host's runs on this thread, with the default control words and without cancellation, for as long as
 /// this value lives. Then all is as it was, the flags of floating point too: a call raises and clears none. But from
-/// the first call on the library stays in the process: threads that it starts, or that drivers do, may outlive the call.
+/// the first call on the library stays in the process: threads that it starts, or that drivers do, may outlive the
+/// call.
 pub struct Call {
     /// The words of a call around this one, where a callback has made it.
     outer: Option<ControlWords>,
