@@ -13,7 +13,7 @@
 //! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
 //! - `random`, `recent` (costly things that are kept), `deferred` (work that waits until a thread holds no lock of the
 //!   process), `allocate` (memory that may be refused), `thread_scope` (what the library's threads take over from the
-//!   threads that they work for), [`error`].
+//!   threads that they work for), `platform` (what is asked of the system), [`error`].
 //!
 //! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms/imports.rs holds it.
 
@@ -30,6 +30,7 @@ pub mod image;
 pub mod interop;
 pub mod job;
 pub mod physics;
+mod platform;
 mod random;
 mod recent;
 pub mod renderer;

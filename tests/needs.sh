@@ -55,12 +55,25 @@ missing_window_packages() {
     has_validation || printf '%s\n' vulkan-validationlayers
 }
 
+# The Debian packages of missing programs that build bhr.dll for Windows, and hosts of it, and run them.
+missing_packages_of_windows() {
+    missing gcc-mingw-w64-x86-64 x86_64-w64-mingw32-gcc
+    missing binutils-mingw-w64-x86-64 x86_64-w64-mingw32-objdump
+    missing wine wine
+    missing zip zip
+    missing unzip unzip
+    missing clang clang
+    missing lld lld-link
+    missing llvm llvm-dlltool
+}
+
 # The Debian packages of missing programs that only tests/run all needs.
 missing_packages_of_all() {
     missing clang clang++
     missing nodejs node
     missing npm npm
     missing golang-go go gofmt
+    missing_packages_of_windows
 }
 
 # The Debian packages of what is missing, one a line.

@@ -10,6 +10,7 @@ mod stack;
 
 pub use stack::on_enough_stack;
 
+use crate::platform;
 use cancellation::Uncancelled;
 use control_words::ControlWords;
 use std::cell::Cell;
@@ -21,7 +22,9 @@ thread_local! {
 }
 
 /// A call of the host's runs on this thread, with the default control words and without cancellation, for as long as
-/// this value lives. Then all is as it was, the flags of floating point too: a call raises and clears none.
+/// this value lives. Then all is as it was, the flags of floating point too: a call raises and clears none. But from
+/// the first call on the library stays in the process: threads that it starts, or that drivers do, may outlive the
+/// call.
 pub struct Call {
     /// The words of a call around this one, where a callback has made it.
     outer: Option<ControlWords>,
@@ -32,6 +35,7 @@ pub struct Call {
 
 impl Call {
     pub fn enter() -> Self {
+        platform::stay_mapped();
         let uncancelled = Uncancelled::begin();
         let outer = HOST_WORDS.replace(Some(ControlWords::of_thread()));
         ControlWords::set_default();

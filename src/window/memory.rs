@@ -78,6 +78,10 @@ impl MemoryWindow {
 
     /// Shows `pixels`, rows of `size` BGRA pixels without gaps, from the window's top left corner. Errors:
     /// SURFACE_LOST.
+    #[cfg_attr(
+        not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))),
+        expect(unused_variables, reason = "softbuffer's surface knows its window")
+    )]
     pub fn present(&mut self, window: &Window, size: [u32; 2], pixels: &[u8]) -> Result<()> {
         match self {
             #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]

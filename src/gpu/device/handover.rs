@@ -6,7 +6,7 @@ use super::process_end;
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::target::{GpuTarget, TargetRead};
 use super::turns::InUse;
-use super::wgpu_device::{Device, Uploads, hangs_after};
+use super::wgpu_device::{Device, Uploads};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::sync::Arc;
@@ -16,6 +16,7 @@ use std::sync::Arc;
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
 /// The part of a frame's handover that goes with one submission.
+#[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "nothing is shared with hosts there"))]
 #[derive(Default)]
 pub struct Handover<'a> {
     /// The targets of a frame that this submission is the first to write.
@@ -219,7 +220,7 @@ impl Device {
             return Ok(());
         }
         self.let_go_of_done();
-        let deadline = std::time::Instant::now() + hangs_after();
+        let deadline = std::time::Instant::now() + super::wgpu_device::hangs_after();
         let open = self.turns.in_use().iter().flat_map(|one| one.waits.clone()).collect::<Vec<_>>();
         for SemaphoreUse { semaphore, value } in open {
             let Some(value) = value else { continue };

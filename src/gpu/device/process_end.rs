@@ -21,6 +21,7 @@ use std::time::{Duration, Instant};
 /// are destroyed.
 const LONGEST: Duration = Duration::from_secs(10);
 /// How long threads are held up: handlers and destructors take less, unless they wait for something.
+#[cfg(any(unix, test))]
 const PAUSE: Duration = Duration::from_secs(2);
 /// How long threads are held up after something was to be destroyed, counted from the last such thing: what the host
 /// lent it may be gone.
@@ -136,6 +137,7 @@ pub fn abandon() {
 }
 
 /// The process ends on this thread.
+#[cfg(any(unix, test))]
 fn close(deadline: Instant) {
     ENDING.store(this_thread().unwrap_or(0), Ordering::SeqCst);
     shut(deadline, PAUSE);

@@ -5,7 +5,9 @@
 
 use super::adapter::{Adapter, device_descriptor};
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
-use super::turns::{HostTurn, QueueTurns};
+#[cfg(not(target_vendor = "apple"))]
+use super::turns::HostTurn;
+use super::turns::QueueTurns;
 #[cfg(not(target_vendor = "apple"))]
 use super::vulkan::parts::{self, VulkanParts};
 #[cfg(not(target_vendor = "apple"))]
@@ -70,6 +72,7 @@ pub struct Device {
 }
 
 /// Opens the adapter's device, or takes the host's. Errors: a text.
+#[cfg_attr(target_vendor = "apple", expect(unused_variables, reason = "hosts' devices are Vulkan's"))]
 fn opened(
     adapter: &Adapter,
     raw: &wgpu::Adapter,

@@ -4,7 +4,7 @@
 
 use super::failed;
 use super::parts::VulkanParts;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::gpu::device::external::{OPAQUE_FD, SemaphoreKind, SemaphoreOrigin};
 use crate::gpu::device::process_end;
 use ash::vk;
@@ -97,7 +97,7 @@ impl GpuSemaphore {
         // SAFETY: the semaphore was made just now and nobody uses it; the descriptor is bhr's own copy.
         unsafe { fns.import_semaphore_fd(&import) }.map_err(|error| {
             let error = failed("vkImportSemaphoreFdKHR", error);
-            Error::new(ErrorKind::InvalidArgument, format!("handle fd {fd} is no semaphore of this driver: {error}"))
+            Error::argument(format!("handle fd {fd} is no semaphore of this driver: {error}"))
         })?;
         // The driver has taken it over.
         copy.taken();
