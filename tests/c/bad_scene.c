@@ -225,6 +225,7 @@ static void time_effects_view(Watch *watch, BhrContext *context) {
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_effects", bhr_get_effects(context, NULL));
     /* Unknown bits are ignored: the watched scene is lit with all of them set, all but BEAMING. */
     CHECK_OK(bhr_set_effects(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT | BHR_EFFECT_LIGHT_DELAY));
+    CHECK_OK(bhr_get_effects(context, &watch->effects)); /* which tells unknown bits, too */
     check_unchanged(watch, __FILE__, __LINE__, "unknown effects");
     static const int32_t unknown[] = {-1, 8, 1000, INT32_MIN};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {

@@ -106,8 +106,9 @@ static Outcome compare(const unsigned char *part, const unsigned char *whole, ui
     return outcome;
 }
 
-/* Renders into `whole`, then again into `part`, cancelling in the middle. Every pixel of the cancelled frame must be that of the whole frame or untouched. 0 when the frame is too small to be cancelled between
- * two of its pieces. */
+/* Renders into `whole`, then again into `part`, cancelling in the middle; in `tests/run all` then to the end. Every
+ * pixel of the cancelled frame must be that of the whole frame or untouched. 0 when the frame is too small to be
+ * cancelled between two of its pieces. */
 static int cancel_halfway(BhrContext *context, uint32_t size, unsigned char *whole, unsigned char *part) {
     const size_t stride = (size_t)size * 4 + 12, bytes = stride * size;
     BhrImage     image = image_of(BHR_FORMAT_RGBA8_SRGB, size, size, whole, bytes);
@@ -138,6 +139,11 @@ static int cancel_halfway(BhrContext *context, uint32_t size, unsigned char *who
     CHECK(finished > 0.1 && finished < 0.9, "cancelled at %g, but a part of %g was finished", progress.cancelled_at,
           finished);
 
+    if (check_runs_all()) {
+        progress = silent_progress(context);
+        CHECK_OK(bhr_render_image(context, &image));
+        CHECK(compare(part, whole, size, stride).finished == (size_t)size * size, "a frame after a cancelled one");
+    }
     CHECK_OK(bhr_set_progress(context, NULL, NULL));
     return 1;
 }
@@ -152,7 +158,7 @@ static void cancel_in_the_middle(BhrContext *context) {
     Watch          watch;
     watch_begin(&watch, context);
     while (size <= LARGEST && !cancel_halfway(context, size, whole, part)) {
-        size *= 4;
+        size *= check_runs_all() ? 2 : 4;
     }
     check_unchanged(&watch, __FILE__, __LINE__, "a frame after a cancelled one");
     CHECK(size <= LARGEST, "no frame up to %d x %d can be cancelled halfway", LARGEST, LARGEST);

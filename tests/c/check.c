@@ -204,6 +204,11 @@ static void ask_getters(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_get_sky(context, &watch->sky));
     CHECK_OK(bhr_get_film(context, &watch->film));
     CHECK_OK(bhr_get_quality(context, &watch->quality));
+    CHECK_OK(bhr_get_time(context, &watch->time));
+    CHECK_OK(bhr_get_effects(context, &watch->effects));
+    CHECK_OK(bhr_get_view(context, &watch->view));
+    watch->region.struct_size = sizeof watch->region;
+    CHECK_OK(bhr_get_region(context, &watch->region, &watch->region_present));
 }
 
 static void look(Watch *watch) {
@@ -212,7 +217,7 @@ static void look(Watch *watch) {
     watch->frame_status = bhr_render_image(watch->context, &image);
 }
 
-/* Everything the getters say, and a frame: that holds time, effects, view and region too, which have no getter. */
+/* Everything the getters say, and a frame, which holds what has no getter. */
 void watch_begin(Watch *watch, BhrContext *context) {
     ask_getters(watch, context);
     look(watch);
@@ -220,8 +225,8 @@ void watch_begin(Watch *watch, BhrContext *context) {
 
 /* Whether the call sets what no getter tells: only a frame shows that nothing changed. */
 static int sets_without_getter(const char *call) {
-    static const char *const have[] = {"axis(",    "mass(",      "spin(", "camera(", "disk(",
-                                       "volumes(", "hot_spots(", "sky(",  "film(",   "quality("};
+    static const char *const have[] = {"axis(", "mass(", "spin(",    "camera(", "disk(",    "volumes(", "hot_spots(",
+                                       "sky(",  "film(", "quality(", "time(",   "effects(", "view(",    "region("};
     const char *what = strstr(call, "bhr_set_");
     for (size_t i = 0; what != NULL && i < COUNT_OF(have); i++) {
         if (strncmp(what + strlen("bhr_set_"), have[i], strlen(have[i])) == 0) {
@@ -268,6 +273,11 @@ int check_unchanged(const Watch *watch, const char *file, int line, const char *
         wrong = "film";
     } else if (memcmp(&now.quality, &watch->quality, sizeof now.quality) != 0) {
         wrong = "quality";
+    } else if (now.time != watch->time || now.effects != watch->effects || now.view != watch->view) {
+        wrong = "time, effects or view";
+    } else if (now.region_present != watch->region_present ||
+               memcmp(&now.region, &watch->region, sizeof now.region) != 0) {
+        wrong = "region";
     } else if (looks && now.frame_status != watch->frame_status) {
         wrong = "status of a frame";
     } else if (looks && memcmp(now.frame, watch->frame, sizeof now.frame) != 0) {

@@ -64,6 +64,11 @@ typedef struct Watch {
     BhrSky        sky;
     BhrFilm       film;
     BhrQuality    quality;
+    double        time;
+    uint32_t      effects;
+    BhrView       view;
+    BhrRegion     region;
+    int32_t       region_present;
     BhrStatus     frame_status; /* some scenes cannot be rendered; they stay so */
     unsigned char frame[WATCH_WIDTH * WATCH_HEIGHT * 4];
 } Watch;
