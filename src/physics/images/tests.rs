@@ -163,11 +163,11 @@ fn images_are_reciprocal() {
 /// Rays towards the hole have energies next to 0 there, and steps too short to go anywhere.
 #[test]
 fn observers_on_the_horizon_get_an_answer() {
-    let place = DVec3::new(1.0768800860838419, 1.6734582265113587, 0.19966683329365631);
+    let place = DVec3::new(1.076_880_086_083_842, 1.673_458_226_511_358_7, 0.199_666_833_293_656_3);
     for distance in [2.0, 2.0 * (1.0 - f64::EPSILON), 2.0 * (1.0 + f64::EPSILON), 2.0 + 1e-12] {
         let Ok(frame) = LocalFrame::new(0.0, place.normalize() * distance) else { continue };
         let begun = Instant::now();
-        for point in [DVec3::new(6.283186, 0.999, 3.14), DVec3::new(-3.0, 0.1, 0.0)] {
+        for point in [DVec3::new(6.3, 0.999, 3.1), DVec3::new(-3.0, 0.1, 0.0)] {
             for order in 0..=HIGHEST_ORDER {
                 let found = image(&frame, point, order);
                 assert!(found.is_err() || found.is_ok_and(|image| image.look.is_normalized()), "r = {distance}");
