@@ -166,14 +166,18 @@ fn steps_apart(format: PixelFormat, own: &[u8], any: &[u8]) -> f64 {
     let pairs = |size: usize| own.chunks_exact(size).zip(any.chunks_exact(size));
     let half = |bytes: &[u8]| f64::from(u16::from_le_bytes([bytes[0], bytes[1]]));
     let float = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-    let apart = |a: f64, b: f64| if a == b || (a.is_nan() && b.is_nan()) { 0.0 } else { (a - b).abs() };
+    let apart = |a: f64, b: f64| match a == b || (a.is_nan() && b.is_nan()) {
+        true => 0.0,
+        false if a.is_finite() && b.is_finite() => (a - b).abs(),
+        false => f64::INFINITY,
+    };
     match format {
         PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => {
             pairs(1).map(|(a, b)| apart(a[0].into(), b[0].into())).fold(0.0, f64::max)
         }
         PixelFormat::Rgba16F => pairs(2).map(|(a, b)| apart(half(a), half(b))).fold(0.0, f64::max),
         PixelFormat::Rgba32F | PixelFormat::R32F => {
-            let relative = |a: f64, b: f64| 1024.0 * apart(a, b) / (a.abs().max(b.abs()) + 1e-4);
+            let relative = |a: f64, b: f64| 1024.0 * apart(a, b) / (a.abs().max(b.abs()) + 1e-4).min(f64::MAX);
             pairs(4).map(|(a, b)| relative(float(a), float(b))).fold(0.0, f64::max)
         }
     }

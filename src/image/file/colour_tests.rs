@@ -89,6 +89,8 @@ fn codes_mean_what_the_first_chunk_in_the_order_of_the_standard_says() {
         // Code points that are not read leave the word to the next chunk.
         (&[(b"cICP", &[1, 9, 0, 1]), gamma], 0.5),
         (&[(b"cICP", &[3, 13, 0, 1]), srgb, gamma], 0.214_04),
+        // The first one counts, whatever the second is.
+        (&[(b"cICP", &[1, 8, 0, 1]), (b"cICP", &[9, 16, 9, 1])], 0.5),
     ] {
         let found = of_half(chunks);
         assert!((found - wanted).abs() < 1e-4, "{chunks:?}: {found}, wanted {wanted}");

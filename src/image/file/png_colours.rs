@@ -34,6 +34,8 @@ pub(super) enum Profile {
 /// none. Errors: IO; UNSUPPORTED for a cICP chunk that no PNG may have, which the decoder refuses without a name.
 pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> {
     let mut found = Profile::Absent;
+    // The decoder passes over a second cICP, and over one after the palette.
+    let mut heeds_cicp = true;
     file.seek(SeekFrom::Start(8)).map_err(io_error)?;
     loop {
         let mut head = Vec::with_capacity(8);
@@ -45,7 +47,9 @@ pub(super) fn find_profile(file: &mut (impl BufRead + Seek)) -> Result<Profile> 
             b"iCCP" if !matches!(found, Profile::Absent) => {}
             b"iCCP" if length > MAX_PROFILE_BYTES => found = Profile::TooLong,
             b"iCCP" => found = Profile::Packed(length),
-            b"cICP" if length == 4 => {
+            b"PLTE" => heeds_cicp = false,
+            b"cICP" if length == 4 && heeds_cicp => {
+                heeds_cicp = false;
                 let mut points = [0; 4];
                 file.read_exact(&mut points).map_err(io_error)?;
                 check_code_points(points)?;
