@@ -123,8 +123,9 @@
  *
  * The process
  *   The library never writes to stdout or stderr, never calls exit or abort (but see Memory), installs no signal
- *   handler, and lets no Rust panic out. It stays mapped after dlclose and FreeLibrary. After fork() the child may
- *   only exec. docs/process.md says more, and what happens when a process ends while frames are rendered.
+ *   handler, and lets no Rust panic out. It stays mapped after dlclose, and after FreeLibrary once it was called.
+ *   After fork() the child may only exec. docs/process.md says more, and what happens when a process ends while frames
+ *   are rendered.
  */
 
 #ifndef BHR_H

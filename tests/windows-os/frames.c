@@ -64,6 +64,9 @@ int main(int argc, char **argv) {
 
     BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels);
     CHECK_OK(bhr_render_image(context, &image));
+    size_t lit = 0;
+    for (size_t i = 0; i < sizeof pixels; i += 4) lit += pixels[i] > 64;
+    CHECK(lit > WIDTH * HEIGHT / 50, "the frame is dark: %lu pixels are lit", (unsigned long)lit);
     CHECK_OK(bhr_camera_rays(context, SIDE, SIDE, rays));
     CHECK_OK(bhr_trace_rays(context, rays, sizeof *rays, SIDE * SIDE, hits, sizeof *hits));
     write_file(argv[2], "pixels", pixels, sizeof pixels);
