@@ -97,13 +97,20 @@ cmake_builds() (
         cmake --build "$examples" --parallel 2
 )
 
+# cargo_test ARGUMENTS...: cargo test of bhr as all tests build it. Clippy's driver is rustc, and says what Clippy finds
+# besides: cargo clippy would check all dependencies once more, for a minute and a half of a processor. Cargo keeps what
+# it builds apart from what plain rustc does. Its warnings are errors in tests/rust/run.
+cargo_test() {
+    RUSTC_WORKSPACE_WRAPPER=clippy-driver cargo test --profile checked --locked --manifest-path "$root/Cargo.toml" "$@"
+}
+
 # Builds the libraries that the C tests and examples need. cargo test makes the checked one: cargo build would make
 # another, without the features of dependencies that only tests need, and compile those dependencies once more for it.
 # tests/run has built them before it starts the scripts that ask for them, several at a time.
 build_library() {
     [ -z "${BHR_TESTS_BUILT:-}" ] || return 0
     own_target_folder || return 1
-    cargo test --profile checked --no-run --test reference --locked --manifest-path "$root/Cargo.toml" || return 1
+    cargo_test --no-run --test reference || return 1
     ! runs_all || cargo build --release --lib --locked --manifest-path "$root/Cargo.toml"
 }
 

@@ -211,6 +211,7 @@ pub fn footprint(pixel_angle: f64, distance: f64, b: f64, from: f64, to: f64, be
 mod tests {
     use super::*;
     use crate::physics::orbit::circular_orbit;
+    use crate::random::runs_all;
 
     const SPIN: f64 = 0.7;
     const SHARP: Blur = Blur { footprint: 0.0, spacing: 0.0 };
@@ -268,7 +269,8 @@ mod tests {
     /// However fine or coarse it is seen, and however clumpy it is; the less of it is seen, the less it varies.
     #[test]
     fn mean_density_is_one() {
-        for clumping in [0.5, 1.0, 1.8] {
+        // Everyday of one clumping: the others take the same pattern to another power.
+        for clumping in if runs_all() { vec![0.5, 1.0, 1.8] } else { vec![1.8] } {
             let patterns =
                 (0..150_u32).map(|i| matter(&Volume { clumping, ..disk(i.into()) }, CIRCULAR, 37.0 * f64::from(i)));
             let patterns = patterns.collect::<Vec<_>>();

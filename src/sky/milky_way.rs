@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::image::file::decode_png;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::random::mix;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, UVec3};
 use std::f64::consts::{LN_10, PI, TAU};
 use std::sync::OnceLock;
 
@@ -46,7 +46,7 @@ const BULGE_RADIUS: f64 = 0.45;
 
 /// Octaves of the dust, the cells of the first per radian, and how much smaller the cells of the next are, and its
 /// amplitude.
-const DUST_OCTAVES: u32 = 6;
+const DUST_OCTAVES: usize = 6;
 const DUST_CELLS: f64 = 7.0;
 const DUST_FINER: f64 = 2.03;
 const DUST_FAINTER: f64 = 0.76;
@@ -60,7 +60,7 @@ const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
 const DUST_SEED: u32 = 0x4d57;
 /// Star clouds: octaves of noise, from cells of 4 degrees down to a quarter of one, and magnitudes by which the light
 /// is brighter where the noise is 1 and fainter where it is -1.
-const CLOUD_OCTAVES: u32 = 5;
+const CLOUD_OCTAVES: usize = 5;
 const CLOUD_CELLS: f64 = 14.0;
 const CLOUD_FAINTER: f64 = 0.8;
 const CLOUD_DEPTH: f64 = 0.5;
@@ -126,12 +126,13 @@ impl MilkyWay {
         SkyMap::of_rows(MAP_SIZE, &|y, out| {
             let v = place(y, height);
             let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
+            let mut noise = RowNoise::new();
             for (column, out) in columns.iter().zip(out) {
                 let outline_height = self.outline_height(column, v);
                 if outline_height > 0.0 {
                     let [cos_ra, sin_ra] = column.right_ascension;
                     let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
-                    *out = self.light(outline_height, self.to_galactic * towards).map(|c| c as f32);
+                    *out = self.light(outline_height, self.to_galactic * towards, &mut noise).map(|c| c as f32);
                 }
             }
         })
@@ -160,15 +161,15 @@ impl MilkyWay {
     }
 
     /// Linear Rec. 709 radiance towards a galactic direction.
-    fn light(&self, height: f64, galactic: DVec3) -> [f64; 3] {
-        let clouds = clouds(galactic);
+    fn light(&self, height: f64, galactic: DVec3, noise: &mut RowNoise) -> [f64; 3] {
+        let clouds = noise.clouds(galactic);
         let radiance = self.brightest * steps(height) * (0.4 * LN_10 * CLOUD_DEPTH * clouds).exp();
         let from_centre = galactic.x.clamp(-1.0, 1.0).acos() / BULGE_RADIUS;
         let bulge = (-from_centre * from_centre).exp();
         let arms = ARM_TEMPERATURE * (CLOUD_HEAT * clouds.clamp(-2.0, 2.0)).exp();
         let temperature = arms + (BULGE_TEMPERATURE - arms) * bulge;
         let rgb = self.colours.shade(temperature, temperature);
-        let magnitudes = extinction(galactic);
+        let magnitudes = noise.extinction(galactic);
         if magnitudes == 0.0 {
             return rgb.map(|v| radiance * v);
         }
@@ -188,50 +189,99 @@ fn brightest() -> f64 {
     MILKY_WAY_GAIN * STAR_REFERENCE_RADIANCE * flux
 }
 
-/// V magnitudes of the dust that the picture does not have.
-fn extinction(galactic: DVec3) -> f64 {
-    // The layer ends at 2 heights.
-    let layer = ((-(galactic.z / DUST_HEIGHT).powi(2)).exp() - 0.02).max(0.0);
-    if layer == 0.0 {
-        return 0.0;
+/// What the picture does not have, for texels one after another along a row.
+struct RowNoise {
+    dust: Octaves<DUST_OCTAVES>,
+    clouds: Octaves<CLOUD_OCTAVES>,
+}
+
+impl RowNoise {
+    fn new() -> Self {
+        Self { dust: Octaves::new(DUST_FAINTER, DUST_SEED), clouds: Octaves::new(CLOUD_FAINTER, CLOUD_SEED) }
     }
-    // Clouds are drawn out along the plane.
-    let place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
-    DUST_DEPTH * layer * octaves(place, DUST_OCTAVES, DUST_FAINTER, DUST_SEED).max(0.0)
-}
 
-/// The noise of the star clouds that the picture does not have.
-fn clouds(galactic: DVec3) -> f64 {
-    octaves(galactic * CLOUD_CELLS, CLOUD_OCTAVES, CLOUD_FAINTER, CLOUD_SEED)
-}
-
-/// Noise of several sizes, the cells of the first 1 wide.
-fn octaves(mut place: DVec3, octaves: u32, fainter: f64, seed: u32) -> f64 {
-    let mut noise = 0.0;
-    let mut amplitude = 1.0;
-    for octave in 0..octaves {
-        noise += amplitude * value_noise(place + DVec3::splat(1024.0), mix(seed + octave));
-        amplitude *= fainter;
-        place *= DUST_FINER;
+    /// V magnitudes of the dust.
+    fn extinction(&mut self, galactic: DVec3) -> f64 {
+        // The layer ends at 2 heights.
+        let layer = ((-(galactic.z / DUST_HEIGHT).powi(2)).exp() - 0.02).max(0.0);
+        if layer == 0.0 {
+            return 0.0;
+        }
+        // Clouds are drawn out along the plane.
+        let place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
+        DUST_DEPTH * layer * self.dust.at(place).max(0.0)
     }
-    noise
+
+    /// The noise of the star clouds.
+    fn clouds(&mut self, galactic: DVec3) -> f64 {
+        self.clouds.at(galactic * CLOUD_CELLS)
+    }
 }
 
-/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them. Coordinates are positive.
-fn value_noise(at: DVec3, key: u32) -> f64 {
-    let low = at.as_uvec3();
-    let t = at - low.as_dvec3();
-    let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
+/// Noise of `N` sizes, the cells of the first 1 wide, and of each the cell that was asked for last: places that follow
+/// one another along a row mostly lie in the same one, and its random numbers take longer to find than all the rest.
+struct Octaves<const N: usize> {
+    fainter: f64,
+    cells: [Cell; N],
+}
+
+impl<const N: usize> Octaves<N> {
+    fn new(fainter: f64, seed: u32) -> Self {
+        Self { fainter, cells: std::array::from_fn(|octave| Cell::new(mix(seed + octave as u32))) }
+    }
+
+    fn at(&mut self, mut place: DVec3) -> f64 {
+        let mut noise = 0.0;
+        let mut amplitude = 1.0;
+        for cell in &mut self.cells {
+            noise += amplitude * cell.value_noise(place + DVec3::splat(1024.0));
+            amplitude *= self.fainter;
+            place *= DUST_FINER;
+        }
+        noise
+    }
+}
+
+/// A cell of a lattice of random numbers in [-1, 1], one at each point of whole coordinates.
+struct Cell {
+    key: u32,
+    low: UVec3,
+    /// The numbers at its corners, x fastest.
+    corners: [f64; 8],
+}
+
+impl Cell {
+    fn new(key: u32) -> Self {
+        let low = UVec3::ZERO;
+        Self { key, low, corners: corners(low, key) }
+    }
+
+    /// Smooth noise: the lattice's numbers, cubic between them. Coordinates are positive.
+    fn value_noise(&mut self, at: DVec3) -> f64 {
+        let low = at.as_uvec3();
+        if low != self.low {
+            *self = Self { key: self.key, low, corners: corners(low, self.key) };
+        }
+        let t = at - low.as_dvec3();
+        let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
+        let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
+        let [a, b, c, d, e, f, g, h] = self.corners;
+        let along_y = |a, b, c, d| between(between(a, b, s.x), between(c, d, s.x), s.y);
+        between(along_y(a, b, c, d), along_y(e, f, g, h), s.z)
+    }
+}
+
+/// The random numbers at the corners of a cell.
+fn corners(low: UVec3, key: u32) -> [f64; 8] {
     // The key of a lattice point: the factors are odd and have no common pattern, so that each point has another key.
     let point = |x: u32, y: u32, z: u32| {
         x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77)).wrapping_add(z.wrapping_mul(0xc2b2_ae3d))
     };
     let first = point(low.x, low.y, low.z).wrapping_add(key);
-    let corner = |i, j, k| f64::from(mix(first.wrapping_add(point(i, j, k)))) / 2_147_483_647.5 - 1.0;
-    let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
-    let along_x = |j, k| between(corner(0, j, k), corner(1, j, k), s.x);
-    let along_y = |k| between(along_x(0, k), along_x(1, k), s.y);
-    between(along_y(0), along_y(1), s.z)
+    std::array::from_fn(|corner| {
+        let [i, j, k] = [0, 1, 2].map(|axis| corner as u32 >> axis & 1);
+        f64::from(mix(first.wrapping_add(point(i, j, k)))) / 2_147_483_647.5 - 1.0
+    })
 }
 
 #[cfg(test)]

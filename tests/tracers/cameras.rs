@@ -254,7 +254,8 @@ fn looks_in_single_precision() {
     for (projection, _) in PROJECTIONS {
         let size = match projection {
             Projection::Cube => [600, 100],
-            _ => [400, 300],
+            _ if runs_all() => [400, 300],
+            _ => [200, 150],
         };
         let [cpu, gpu] = renderers.each_mut().map(|(_, renderer)| {
             // Traced: tables are less exact than looks are.

@@ -5,6 +5,7 @@
 
 use crate::frames::{both, cpu, floats, picture};
 use crate::lensed::Mesh;
+use crate::random::runs_all;
 use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
@@ -181,10 +182,14 @@ fn spheres_at_their_lensed_places_are_where_rays_see_them() {
         (12.0, 1.3, DVec3::new(-4.0, 1.0, 1.0), 0.7),
         (12.0, 1.3, DVec3::new(4.0, 8.0, 2.0), 1.0),
     ];
-    for spin in [0.0, 0.9] {
+    for (i, spin) in [0.0, 0.9].into_iter().enumerate() {
         renderer.scene = Scene { disk: None, ..Scene::plain() };
         renderer.scene.hole.spin = spin;
-        for (r, fov_y, centre, radius) in sights {
+        for (j, (r, fov_y, centre, radius)) in sights.into_iter().enumerate() {
+            // Everyday each sight at one spin.
+            if !runs_all() && (i + j) % 2 == 1 {
+                continue;
+            }
             let position = DVec3::new(0.0, -r, 0.0);
             renderer.scene.camera = Camera { position, forward: -position, fov_y, ..Camera::plain() };
             let off = outline(&renderer, [320, 180], (centre, radius), Drawn::Lensed);

@@ -147,7 +147,7 @@ fn rings_are_steady_while_the_camera_turns() {
     // thousandth.
     let tiny = [(0.0, 1000.0, 40), (0.9, 1000.0, 40)];
     // In sixteenths of a pixel. The CPU's pictures are the GPU's (tests/tracers/pictures.rs), so that it takes fewer.
-    let steps = if runs_all() { [17, 64] } else { [5, 13] };
+    let steps = if runs_all() { [17, 64] } else { [3, 7] };
     for ((tracer, mut renderer), steps) in both().into_iter().zip(steps) {
         for (spin, distance, side) in OBSERVERS.into_iter().chain(tiny) {
             renderer.scene = scene(spin, distance, 20.0, 0.3);

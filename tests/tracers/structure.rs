@@ -107,6 +107,8 @@ fn structure_is_seen_with_its_delay() {
 #[test]
 fn pixels_show_about_what_many_rays_find() {
     let mut renderer = cpu();
+    // Everyday the two thick ones.
+    let first = usize::from(!runs_all());
     for volume in [
         Volume::default(),
         Volume { thickness: 0.14, absorption: 0.3, ..Volume::default() },
@@ -117,7 +119,10 @@ fn pixels_show_about_what_many_rays_find() {
             flow: FlowLaw::AngularMomentum,
             ..Volume::default()
         },
-    ] {
+    ]
+    .into_iter()
+    .skip(first)
+    {
         let mut scene = alone(10.0, volume);
         let one = light(&mut renderer, &scene);
         scene.quality.samples_per_pixel = 16;

@@ -3,6 +3,7 @@
 //! filter, and fine structure does not alias. How samples are placed is tested in src/scene/frame.rs.
 
 use crate::frames::both;
+use crate::random::runs_all;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Effects};
@@ -44,7 +45,9 @@ fn edge(light: &[f64]) -> Vec<usize> {
 
 #[test]
 fn more_samples_come_nearer() {
-    for (tracer, mut renderer) in both() {
+    // Everyday on the GPU: both tracers' samples are compared by `gpu_and_cpu_pictures_agree` and in frames with more.
+    let [cpu, gpu] = both();
+    for (tracer, mut renderer) in runs_all().then_some(cpu).into_iter().chain([gpu]) {
         show_disk(&mut renderer);
         let best = light(&mut renderer, 256);
         let edge = edge(&best);

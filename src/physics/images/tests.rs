@@ -110,7 +110,7 @@ fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
 
 /// The number of random cases: `all` in `tests/run all`, else a tenth.
 fn count(all: usize) -> usize {
-    if runs_all() { all } else { all / 10 }
+    if runs_all() { all } else { all / 25 }
 }
 
 const SPINS: [f64; 4] = [0.5, 0.9, -0.998, 0.999];

@@ -4,6 +4,7 @@
 
 use super::orbit::{luminance as blackbody_luminance, u_at};
 use super::{both, camera, hits, light, luminance, neighbours, view, whole};
+use crate::random::runs_all;
 use bhr::physics::disk_flux::page_thorne_maximum;
 use bhr::physics::orbit::{horizon_outer, isco};
 use bhr::renderer::Renderer;
@@ -58,9 +59,13 @@ fn closed_form(ray: &Ray, order: u32) -> Option<(f64, f64, bool)> {
 fn g_and_light_are_those_of_the_closed_form_without_spin() {
     // A disk that begins outside the photon sphere also shows light that has turned there.
     let scenes = [(20.0, 0, 13.0, 0.0), (75.0, 0, 13.0, 0.0), (60.0, 1, 11.0, 3.2)];
-    for (inclination, order, width, inner_radius) in scenes {
-        for (tracer, mut renderer) in both() {
-            for method in [Method::Auto, Method::Adaptive] {
+    for (i, (inclination, order, width, inner_radius)) in scenes.into_iter().enumerate() {
+        for (j, (tracer, mut renderer)) in both().into_iter().enumerate() {
+            for (k, method) in [Method::Auto, Method::Adaptive].into_iter().enumerate() {
+                // Everyday each tracer finds the rays of a scene in one way, the other one in the other way.
+                if !runs_all() && (i + j + k) % 2 == 1 {
+                    continue;
+                }
                 renderer.scene.camera = camera(30.0, inclination, width);
                 // The first image leaves a part of the second one free.
                 renderer.scene.disk = Some(Disk { inner_radius, outer_radius: 5.9, ..plunging() });

@@ -2,6 +2,7 @@
 //! The views' raw values, pixel by pixel, against the tracer asked for the same rays; where there is no value, NaN.
 
 use super::{both, bytes, camera, hits, neighbours, view, whole};
+use crate::random::runs_all;
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Disk, DiskReference, EmissionLaw, Fate, Hit, LensTables, Method, Motion, View};
@@ -63,15 +64,20 @@ fn raw_values_are_those_of_the_rays() {
         Case { spin, isco, method, tables, velocity: DVec3::ZERO }
     };
     let fast = DVec3::new(0.2, -0.5, 0.3);
-    for case in [
+    let cases = [
         case(0.0, Method::Auto, LensTables::Always),
         case(0.7, Method::Auto, LensTables::Always),
         case(0.7, Method::Auto, LensTables::Never),
         case(0.7, Method::Rk4, LensTables::Never),
         Case { velocity: fast, ..case(0.0, Method::Auto, LensTables::Always) },
         Case { velocity: fast, ..case(0.7, Method::Auto, LensTables::Always) },
-    ] {
-        for (tracer, mut renderer) in both() {
+    ];
+    for (i, case) in cases.into_iter().enumerate() {
+        for (j, (tracer, mut renderer)) in both().into_iter().enumerate() {
+            // Everyday the first two on both tracers, each of the others on one.
+            if !runs_all() && i > 1 && (i + j) % 2 == 1 {
+                continue;
+            }
             renderer.scene.hole.spin = case.spin;
             renderer.scene.disk = Some(DISK);
             renderer.scene.camera =
