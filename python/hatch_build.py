@@ -23,7 +23,7 @@ from typing import Any
 import cffi
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-# What sys.platform is on platforms that wheels are made for elsewhere.
+# The sys.platform of each platform that wheels are made for elsewhere.
 SYSTEMS = {"win_amd64": "win32", "linux_x86_64": "linux", "linux_aarch64": "linux"}
 
 
