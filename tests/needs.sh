@@ -116,8 +116,11 @@ install_missing() {
     [ ${#packages[@]} -gt 0 ] || return 0
     local install="apt-get install --no-install-recommends ${packages[*]}"
     local advice="apt-get update && $install" other=(true)
-    # Packages of another architecture are known only when it was added.
+    # Packages of another architecture are known only when it was added. Ubuntu has them in an archive of their own,
+    # without which apt would fail from then on.
     if [[ " ${packages[*]} " == *:arm64\ * ]]; then
+        grep -qx 'ID=debian' /etc/os-release 2>/dev/null ||
+            stop "Missing here, from an archive for arm64 that apt has to be told of: ${packages[*]}"
         advice="dpkg --add-architecture arm64 && $advice"
         other=(dpkg --add-architecture arm64)
     fi
