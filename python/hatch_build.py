@@ -2,8 +2,9 @@
 """Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of bhr.h and of
 bhr_interop.h.
 
-The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. hatchling was
-chosen over maturin because it takes a library that is already there, built by whatever cross-compiler, and because
+The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. For another
+machine than this one BHR_PLATFORM says the wheel's platform (build-wheel --platform does). hatchling was chosen over
+maturin because it takes a library that is already there, built by whatever cross-compiler, and because
 maturin would need cbindgen a second time for what include/bhr.h already says.
 """
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import os
 import re
+import runpy
 import subprocess
 import sys
 import sysconfig
@@ -21,7 +23,8 @@ from typing import Any
 import cffi
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-LIBRARY_NAMES = {"darwin": "libbhr.dylib", "win32": "bhr.dll"}
+# The sys.platform of each platform that wheels are made for elsewhere.
+SYSTEMS = {"win_amd64": "win32", "linux_x86_64": "linux", "linux_aarch64": "linux"}
 
 
 def declarations(header: str) -> str:
@@ -43,15 +46,38 @@ def declarations(header: str) -> str:
     return "\n".join(constants + lines) + "\n"
 
 
-def library(root: Path) -> Path:
-    """The library that goes into the wheel."""
+def platform() -> tuple[str, str]:
+    """The platform of the wheel's name, and what sys.platform is there."""
+    given = os.environ.get("BHR_PLATFORM")
+    if not given:
+        return re.sub(r"[^A-Za-z0-9]", "_", sysconfig.get_platform()), sys.platform
+    if given not in SYSTEMS:
+        raise ValueError(f"BHR_PLATFORM is {given}; wheels are made for {', '.join(SYSTEMS)}")
+    if not os.environ.get("BHR_LIBRARY"):
+        raise ValueError("BHR_PLATFORM needs BHR_LIBRARY, a library that is built for it")
+    return given, SYSTEMS[given]
+
+
+def platform_of(path: Path) -> str | None:
+    """The platform that a library is for, if it is one of SYSTEMS."""
+    head = path.read_bytes()[:4096]
+    if head[:4] == b"\x7fELF":
+        return {62: "linux_x86_64", 183: "linux_aarch64"}.get(int.from_bytes(head[18:20], "little"))
+    if head[:2] == b"MZ":
+        begin = int.from_bytes(head[60:64], "little")
+        if head[begin : begin + 6] == b"PE\0\0" + (0x8664).to_bytes(2, "little"):
+            return "win_amd64"
+    return None
+
+
+def library(root: Path, name: str) -> Path:
+    """The library that goes into the wheel, under that name."""
     given = os.environ.get("BHR_LIBRARY")
     if given:
         path = Path(given).resolve()
     else:
         subprocess.run(["cargo", "build", "--release", "--lib", "--locked"], cwd=root, check=True)
-        target = root / os.environ.get("CARGO_TARGET_DIR", "target")
-        path = target / "release" / LIBRARY_NAMES.get(sys.platform, "libbhr.so")
+        path = root / os.environ.get("CARGO_TARGET_DIR", "target") / "release" / name
     if not path.is_file():
         raise FileNotFoundError(f"the library that the wheel is to hold is not there: {path}")
     return path
@@ -71,11 +97,15 @@ class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         ffi.set_source("bhr._ffi", None)
         ffi.cdef(declarations("\n".join(header.read_text(encoding="utf-8") for header in headers)))
         ffi.emit_python_code(str(module))
-        platform = re.sub(r"[^A-Za-z0-9]", "_", sysconfig.get_platform())
+        suffix, system = platform()
+        library_file = runpy.run_path(str(Path(self.root) / "src" / "bhr" / "_platform.py"))["library_file"]
+        file = library(root, library_file(system))
+        if suffix in SYSTEMS and platform_of(file) != suffix:
+            raise ValueError(f"{file} is a library for {platform_of(file)}, not for {suffix}")
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform}"
+        build_data["tag"] = f"py3-none-{suffix}"
         build_data["force_include"][str(module)] = "bhr/_ffi.py"
-        build_data["force_include"][str(library(root))] = f"bhr/{LIBRARY_NAMES.get(sys.platform, 'libbhr.so')}"
+        build_data["force_include"][str(file)] = f"bhr/{library_file(system)}"
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
         self.scratch.cleanup()

@@ -67,6 +67,18 @@ missing_packages_of_windows() {
     missing llvm llvm-dlltool
 }
 
+# The Debian packages of missing programs and libraries that build libbhr.so for AArch64, and hosts of it, and run them.
+missing_packages_of_aarch64() {
+    dpkg-query -W libc6:arm64 >/dev/null 2>&1 || printf '%s\n' libc6:arm64
+    [[ " $* " != *" vulkan "* ]] || [ -e /usr/lib/aarch64-linux-gnu/libvulkan_lvp.so ] ||
+        printf '%s\n' mesa-vulkan-drivers:arm64
+    [[ " $* " != *" vulkan "* ]] || [ -e /usr/lib/aarch64-linux-gnu/libvulkan.so.1 ] ||
+        printf '%s\n' libvulkan1:arm64
+    missing gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc aarch64-linux-gnu-ld
+    missing qemu-user qemu-aarch64
+    missing debhelper dh
+}
+
 # The Debian packages of missing programs that only tests/run all needs.
 missing_packages_of_all() {
     missing clang clang++
@@ -74,6 +86,7 @@ missing_packages_of_all() {
     missing npm npm
     missing golang-go go gofmt
     missing_packages_of_windows
+    missing_packages_of_aarch64 vulkan
 }
 
 # The Debian packages of what is missing, one a line.
@@ -102,16 +115,24 @@ install_missing() {
     mapfile -t packages < <(missing_packages)
     [ ${#packages[@]} -gt 0 ] || return 0
     local install="apt-get install --no-install-recommends ${packages[*]}"
-    local advice="apt-get update && $install"
+    local advice="apt-get update && $install" other=(true)
+    # Packages of another architecture are known only when it was added. Ubuntu has them in an archive of their own,
+    # without which apt would fail from then on.
+    if [[ " ${packages[*]} " == *:arm64\ * ]]; then
+        grep -qx 'ID=debian' /etc/os-release 2>/dev/null ||
+            stop "Missing here, from an archive for arm64 that apt has to be told of: ${packages[*]}"
+        advice="dpkg --add-architecture arm64 && $advice"
+        other=(dpkg --add-architecture arm64)
+    fi
     command -v apt-get >/dev/null || stop "Missing here, by their Debian names: ${packages[*]}"
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || stop "Packages are missing, and there is no sudo here. Run as root:" "    $advice"
-        advice="sudo apt-get update && sudo $install"
+        advice=$(sed -E 's/(^|&& )/\1sudo /g' <<<"$advice")
         sudo -n true 2>/dev/null || stop "Packages are missing, and sudo asks for a password here. Run:" "    $advice"
         as_root=(sudo -n)
     fi
     printf 'Installing %s\n' "${packages[*]}"
-    "${as_root[@]}" apt-get update -qq &&
+    "${as_root[@]}" "${other[@]}" && "${as_root[@]}" apt-get update -qq &&
         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
             apt-get install -y -qq --no-install-recommends "${packages[@]}" >"$scratch/apt" 2>&1 || {
         tail -n 30 -- "$scratch/apt"

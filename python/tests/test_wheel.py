@@ -3,9 +3,15 @@
 
 import asyncio
 import importlib.metadata
+import importlib.util
 import re
+import sys
+import types
+from pathlib import Path
 
 import bhr
+import pytest
+from bhr import _library, _platform
 import numpy as np
 from conftest import ROOT
 
@@ -39,6 +45,33 @@ def test_it_holds_what_it_needs_and_no_more():
     names = {file.name for file in WHEEL.files if file.parts[0] == "bhr" and "__pycache__" not in file.parts}
     sources = {file.name for file in (ROOT / "python" / "src" / "bhr").iterdir() if file.is_file()}
     assert names == sources | {"_ffi.py", "libbhr.so"}
+
+
+@pytest.mark.parametrize(
+    "system, file",
+    [("linux", "libbhr.so"), ("android", "libbhr.so"), ("darwin", "libbhr.dylib"), ("win32", "bhr.dll")],
+)
+def test_each_system_loads_its_own_file(monkeypatch, system, file):
+    """The loader, run once more where Python says that it is on that system: with a stand-in for cffi, as the file is
+    not there."""
+    asked = []
+
+    class Ffi:
+        def dlopen(self, path):
+            asked.append(Path(path))
+            return types.SimpleNamespace(bhr_abi_version=lambda: 1, BHR_ABI_VERSION=1)
+
+        def callback(self, *_, **__):
+            return lambda function: function
+
+    loader = importlib.util.spec_from_file_location("bhr._library_elsewhere", _library.__file__)
+    module = importlib.util.module_from_spec(loader)
+    monkeypatch.setitem(sys.modules, loader.name, module)
+    monkeypatch.setattr(sys.modules["bhr._ffi"], "ffi", Ffi())
+    monkeypatch.setattr(sys, "platform", system)
+    loader.loader.exec_module(module)
+    assert asked == [Path(bhr.__file__).resolve().with_name(file)] and asked[0].is_absolute()
+    assert _platform.library_file(system) == file
 
 
 def test_the_programs_of_the_readme(tmp_path, monkeypatch):

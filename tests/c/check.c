@@ -22,20 +22,18 @@ BhrBackend check_begin(int argc, char **argv) {
     program_name = slash != NULL ? slash + 1 : argv[0];
     if (argc >= 2) {
         backend_argument = argv[1];
-        if (strcmp(argv[1], "cpu") == 0) {
-            return BHR_BACKEND_CPU;
-        }
-        if (strcmp(argv[1], "vulkan") == 0) {
-            return BHR_BACKEND_VULKAN;
-        }
-        if (strcmp(argv[1], "gl") == 0) {
-            return BHR_BACKEND_GL;
-        }
-        if (strcmp(argv[1], "auto") == 0) {
-            return BHR_BACKEND_AUTO;
+        static const struct {
+            const char *name;
+            BhrBackend  backend;
+        } backends[] = {{"cpu", BHR_BACKEND_CPU},     {"vulkan", BHR_BACKEND_VULKAN}, {"gl", BHR_BACKEND_GL},
+                        {"metal", BHR_BACKEND_METAL}, {"d3d12", BHR_BACKEND_D3D12},   {"auto", BHR_BACKEND_AUTO}};
+        for (size_t i = 0; i < sizeof backends / sizeof *backends; i++) {
+            if (strcmp(argv[1], backends[i].name) == 0) {
+                return backends[i].backend;
+            }
         }
     }
-    fprintf(stderr, "usage: %s cpu|vulkan|gl|auto\n", program_name);
+    fprintf(stderr, "usage: %s cpu|vulkan|gl|metal|d3d12|auto\n", program_name);
     exit(2);
 }
 

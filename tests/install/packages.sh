@@ -122,6 +122,32 @@ conan_recipe() {
     done
 }
 
+# The recipe for Windows, of a zip with stand-ins for its files: tests/windows-os looks into the real one. It is for
+# no other system, and the recipe of the repository is not for Windows.
+conan_recipe_of_windows() {
+    local name made=$scratch/conan-windows file
+    name=bhr-$(version)-x86_64-windows
+    local windows=(-s os=Windows -s arch=x86_64 -s compiler=gcc -s compiler.version=12 -s build_type=Release)
+    mkdir -p -- "$made/$name"/{bin,lib,include,share/doc/bhr} && cd -- "$made" || return 1
+    for file in bin/bhr.dll lib/{bhr.lib,libbhr.dll.a} include/bhr.h \
+        share/doc/bhr/{LICENSE-MIT,LICENSE-APACHE,THIRD-PARTY.txt,bhr.spdx.json}; do
+        echo "$file" >"$name/$file"
+    done
+    echo "# bhr $(version) for Windows" >"$name/README.md"
+    (cd -- "$name" && find . -type f ! -name SHA256SUMS -exec sha256sum {} + >SHA256SUMS) &&
+        python3 -m zipfile -c "$name.zip" "$name" && "$root/packaging/windows-packages" "$name.zip" "$made" || return 1
+    export CONAN_HOME=$scratch/conan-of-windows
+    with_tools conan profile detect && with_tools conan create "$made/conan-$(version)" "${windows[@]}" -tf="" &&
+        with_tools conan install --requires="bhr/$(version)" "${windows[@]}" --deployer=full_deploy \
+            --deployer-folder="$made" || return 1
+    for file in bin/bhr.dll lib/bhr.lib include/bhr.h share/doc/bhr/LICENSE-MIT; do
+        cmp -- "$name/$file" "full_deploy/host/bhr/$(version)/x86_64/$file" || return 1
+    done
+    ! with_tools conan create "$made/conan-$(version)" -tf="" >said 2>&1 && grep 'for Windows on x86-64' said &&
+        ! with_tools conan create "$root/packaging/conan" "${windows[@]}" -tf="" >said 2>&1 &&
+        grep 'makes one for Windows' said
+}
+
 homebrew_formula() { ruby -c "$root/packaging/homebrew/bhr.rb"; }
 
 # The crate, as it would be published, builds by itself.
@@ -140,6 +166,7 @@ try "tarball, made again" tarball_again
 try "the bill of materials is valid" bill_is_valid
 try "vcpkg port" vcpkg_port
 try "Conan recipe" conan_recipe
+try "Conan recipe for Windows" conan_recipe_of_windows
 try "Homebrew formula" homebrew_formula
 try "cargo package" crate_is_built
 try "a bare Debian" runs_elsewhere

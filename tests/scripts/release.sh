@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # packaging/release on a copy of this checkout that is ready for a release, and on copies with faults. Sourced by
-# tests/scripts/run. What builds (tarball, deb, wheel, abi) has stand-ins that make small files in a moment; the
+# tests/scripts/run. What builds (all but source and sums) has stand-ins that make small files in a moment; the
 # commands themselves are tested by tests/install/packages.sh, tests/python/run and tests/abidiff.rs.
 # shellcheck shell=bash
 
@@ -53,15 +53,46 @@ dpkg-deb --build "$1/tree" "$1/libbhr0_${version}_amd64.deb"
 rm -r "$1/tree"
 END
     stand_in python/build-wheel <<'END'
-echo x >"$1/bhr-$version-py3-none-manylinux_2_28_x86_64.whl"
+platform=manylinux_2_28_x86_64
+[ "$1" != --platform ] || { platform=$2 && shift 2; }
+echo x >"$1/bhr-$version-py3-none-$platform.whl"
+END
+    stand_in packaging/windows <<'END'
+[ "$1" != --check ] || { echo "${WITHOUT_MINGW:-}" && [ -z "${WITHOUT_MINGW:-}" ] && exit; }
+echo x >"$1/bhr-$version-x86_64-windows.zip"
+echo other >"$1/SHA256SUMS"
+END
+    stand_in packaging/windows-packages <<'END'
+case $1 in --url=*) echo "$1" && shift ;; esac
+mkdir -p "$2/vcpkg-$version/bhr" "$2/conan-$version"
+echo x | tee "$2/bhr.$version.nupkg" "$2/vcpkg-$version/bhr/portfile.cmake" "$2/conan-$version/conanfile.py"
+END
+    stand_in packaging/aarch64 <<'END'
+[ "$1" != --check ] || exit 0
+mkdir -p "$1/bhr/lib"
+echo x >"$1/bhr/lib/libbhr.so"
+tar -C "$1" -czf "$1/bhr-$version-aarch64-linux-gnu.tar.gz" bhr
+rm -r "$1/bhr"
+echo other >"$1/SHA256SUMS"
 END
     stand_in "$bin/cargo" <<'END'
 [ "$BHR_NEW_BASELINE" = 1 ] && cmp "tests/abi/bhr-$version.h" include/bhr.h && echo x >"tests/abi/bhr-$version.abi"
 END
-    commit stand-ins && PATH=$bin:$PATH packaging/release "$made" && cd -- "$made" && sha256sum -c SHA256SUMS &&
-        [ "$(wc -l <SHA256SUMS)" -eq 6 ] && cmp -- "abi/bhr-$version.h" "$root/include/bhr.h" || return 1
+    commit stand-ins && PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" && cd -- "$made" &&
+        sha256sum -c SHA256SUMS && [ "$(wc -l <SHA256SUMS)" -eq 11 ] &&
+        cmp -- "abi/bhr-$version.h" "$root/include/bhr.h" && grep "^left out: .*BHR_RELEASE_URL" "$scratch/said" ||
+        return 1
+    # With the place where it will be published there is no more to leave out; without a tool for a part, the rest is
+    # made, unless the part was named.
+    cd -- "$scratch/ready" && rm -r -- "$made" &&
+        BHR_RELEASE_URL=file:///there/ PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
+        [ "$(wc -l <"$made/SHA256SUMS")" -eq 13 ] && ! grep "left out" "$scratch/said" &&
+        grep -xF -e "--url=file:///there/bhr-$version-x86_64-windows.zip" "$scratch/said" && rm -r -- "$made" &&
+        WITHOUT_MINGW="no MinGW" PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
+        grep -xF "left out: windows: no MinGW" "$scratch/said" && [ "$(wc -l <"$made/SHA256SUMS")" -eq 8 ] &&
+        [ ! -e "$made/bhr-$version-x86_64-windows.zip" ] || return 1
     # A part that fails, or that makes what is of another version, is the end.
-    cd -- "$scratch/ready" && rm -r -- "$made" && ! OTHER_VERSION=9.0 packaging/release "$made" deb sums &&
+    rm -r -- "$made" && ! OTHER_VERSION=9.0 packaging/release "$made" deb sums &&
         [ ! -e "$made/SHA256SUMS" ] && stand_in python/build-wheel <<<'exit 3' && commit broken &&
         ! packaging/release "$made" wheel sums && [ ! -e "$made/SHA256SUMS" ]
 }

@@ -12,10 +12,10 @@ from typing import Any, Callable, Optional
 
 from ._constants import Status
 from ._ffi import ffi
+from ._platform import library_file
 
-_NAMES = {"darwin": "libbhr.dylib", "win32": "bhr.dll"}
-
-lib: Any = ffi.dlopen(str(Path(__file__).with_name(_NAMES.get(sys.platform, "libbhr.so"))))
+# By its full path, with which Windows asks no list of folders for it. The DLL needs none but Windows' own.
+lib: Any = ffi.dlopen(str(Path(__file__).resolve().with_name(library_file(sys.platform))))
 
 if lib.bhr_abi_version() != lib.BHR_ABI_VERSION:
     raise ImportError("the library inside the package bhr is not the one that the package was built with")
