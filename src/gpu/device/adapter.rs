@@ -6,6 +6,7 @@ use super::gl_thread::{DisplayAge, GlThread};
 use super::instance::{self, DriverAdapters};
 use super::{driver_lock, loader, process_end};
 use crate::error::{Error, Result};
+use crate::platform::{SYSTEM, System};
 use crate::tracer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -161,16 +162,15 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 
 /// Why a search for this backend alone has found nothing, and what is to be installed where that can be named.
 pub fn absence(backend: Backend) -> &'static str {
-    const LINUX: bool = cfg!(all(unix, not(target_vendor = "apple"), not(target_os = "android")));
     match backend {
         Backend::Vulkan => loader::absence(),
-        Backend::Gl if LINUX => {
+        Backend::Gl if SYSTEM == System::FreeDesktop => {
             "no OpenGL ES 3.1 with compute shaders through EGL; Debian and Ubuntu: libegl1 and libgl1-mesa-dri, or the \
              GPU's own driver"
         }
         Backend::Gl => "no OpenGL ES 3.1 with compute shaders",
-        Backend::Metal if !cfg!(target_vendor = "apple") => "Metal is there on macOS and iOS only",
-        Backend::D3d12 if !cfg!(windows) => "Direct3D 12 is there on Windows only",
+        Backend::Metal if !SYSTEM.is_apples() => "Metal is there on macOS and iOS only",
+        Backend::D3d12 if SYSTEM != System::Windows => "Direct3D 12 is there on Windows only",
         Backend::Metal | Backend::D3d12 | Backend::Cpu => "the system lists no device",
     }
 }
@@ -308,7 +308,7 @@ static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
 /// the contexts of a host that uses it too. So the first instance stays.
 fn keep_display(instance: Option<wgpu::Instance>) {
     static KEPT: OnceLock<wgpu::Instance> = OnceLock::new();
-    if let Some(instance) = instance.filter(|_| !cfg!(windows)) {
+    if let Some(instance) = instance.filter(|_| SYSTEM != System::Windows) {
         KEPT.get_or_init(|| instance);
     }
 }

@@ -85,7 +85,6 @@ impl GpuSemaphore {
         Ok(made)
     }
 
-    #[cfg(unix)]
     fn import(&self, fd: i32) -> Result<()> {
         let copy = super::descriptor::CopiedDescriptor::new(fd)?;
         super::descriptor::check_kind(fd, self.parts.own_semaphore(), "semaphore")?;
@@ -102,11 +101,6 @@ impl GpuSemaphore {
         // The driver has taken it over.
         copy.taken();
         Ok(())
-    }
-
-    #[cfg(not(unix))]
-    fn import(&self, _: i32) -> Result<()> {
-        Err(Error::unsupported("file descriptors are there on Unix only"))
     }
 
     /// A new descriptor of it, the caller's. Errors: INVALID_STATE for one that was not made to be exported.
