@@ -3,10 +3,10 @@
 //! the host's connection, whose Xlib handler would end the process, and the host may destroy its window, or close its
 //! connection, before the surface. From the host's connection only its server is read.
 
-use super::claim;
-use super::native::{Handles, NativeWindow};
 use crate::error::{Error, Result};
 use crate::platform::library_function;
+use crate::window::claim;
+use crate::window::native::{Handles, NativeWindow};
 use raw_window_handle as rwh;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::ffi::{CStr, CString, OsStr, c_char, c_int, c_void};
@@ -26,7 +26,7 @@ pub struct X11Window {
     id: NonZeroU32,
     /// The one name that every connection to it gives.
     server: String,
-    pub depth: u8,
+    depth: u8,
 }
 
 impl X11Window {
@@ -75,6 +75,11 @@ impl X11Window {
     /// The size in pixels; `None` once the window, or the server, is gone.
     pub fn size(&self) -> Option<[u32; 2]> {
         geometry(&self.connection, self.id).map(|g| [g.width.into(), g.height.into()])
+    }
+
+    /// Bits of a pixel that count.
+    pub fn depth(&self) -> u8 {
+        self.depth
     }
 
     /// The window as bhr's own connection knows it.
