@@ -41,7 +41,7 @@ impl Adapter {
 
     /// An adapter of a host's instance, which no list keeps. Errors: UNSUPPORTED with the reason when it cannot run the
     /// tracer.
-    #[cfg(not(target_vendor = "apple"))]
+    #[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "hosts' devices are Vulkan's"))]
     pub(in crate::gpu) fn of_host(
         raw: wgpu::Adapter,
         instance: wgpu::Instance,
@@ -59,7 +59,6 @@ impl Adapter {
 
     /// By what other interfaces know it. Zeros where that is not known.
     pub fn ids(&self) -> AdapterIds {
-        #[cfg(not(target_vendor = "apple"))]
         if self.info.backend == Backend::Vulkan {
             return self.raw().ok().and_then(super::vulkan::parts::ids).unwrap_or_default();
         }

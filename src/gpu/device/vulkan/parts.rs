@@ -93,6 +93,11 @@ impl VulkanParts {
         })
     }
 
+    /// Whether vkQueueSubmit waits where it should not (`Device::wait_for_waits`).
+    pub fn blocks_in_submit(&self) -> bool {
+        self.llvmpipe
+    }
+
     /// The handles that targets and semaphores can be passed by.
     pub fn sharing(&self) -> Sharing {
         let format = vk::Format::R8G8B8A8_UNORM;
