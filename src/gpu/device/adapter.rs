@@ -5,6 +5,7 @@ use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
 use super::instance::{self, DriverAdapters};
 use super::{driver_lock, loader, process_end};
+use crate::attempt;
 use crate::error::{Error, Result};
 use crate::platform::{SYSTEM, System};
 use crate::tracer::{AdapterInfo, Backend};
@@ -319,6 +320,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> Dri
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     process_end::watch();
     let _driver = driver_lock::lock();
+    let _attempt = attempt::begin();
     let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
     process_end::watch();
     let found = found.unwrap_or_else(|_| {
