@@ -354,7 +354,7 @@ pub unsafe extern "C" fn bhr_target_import(
         })
     };
     if let Some(fd) = taken.filter(|_| status >= super::status::BHR_OK) {
-        // It was the host's, which has given it away.
+        // The host has given it away.
         close_descriptor(fd);
     }
     status

@@ -23,7 +23,7 @@ pub fn library_function(_library: &CStr, _function: &CStr) -> Result<NonNull<std
     Err(NotFound::Library)
 }
 
-/// What [`library_function`] does not find.
+/// The part that [`library_function`] does not find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotFound {
     Library,

@@ -5,7 +5,7 @@ use super::*;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-// What these test is one system's, or set by the instructions of one processor.
+// These test what one system has, or what the instructions of one processor set.
 #[cfg(target_os = "linux")]
 mod cancellation;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]

@@ -8,13 +8,13 @@ use std::path::Path;
 
 /// The files besides src/platform, by their paths below src/.
 const FILES: [&str; 10] = [
-    // Which of two files a module is: what a crate has on some systems only, or its stand-in.
+    // These choose a file for a module: what a crate has on some systems only, or its stand-in.
     "gpu/device/mod.rs",
     "window/memory.rs",
     "window/mod.rs",
     // Types of wgpu's that are there on some systems only.
     "gpu/device/interfaces.rs",
-    // What nobody uses where there is no Vulkan.
+    // These have fields that nobody uses where there is no Vulkan.
     "gpu/device/adapter.rs",
     "gpu/device/external.rs",
     "gpu/device/target.rs",
@@ -31,7 +31,9 @@ fn asks(line: &str) -> bool {
         .iter()
         .any(|key| code.contains(&format!("target{key}")))
         || code.split(['(', ',', ')']).any(|word| matches!(word.trim(), "unix" | "windows"));
-    !code.starts_with("//") && names_one && (code.contains("cfg") || code.starts_with("not(") || code.starts_with("all("))
+    !code.starts_with("//")
+        && names_one
+        && (code.contains("cfg") || code.starts_with("not(") || code.starts_with("all("))
 }
 
 #[test]

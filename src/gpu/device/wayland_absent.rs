@@ -4,7 +4,7 @@
 /// An instance, and the adapters it has.
 pub(super) type DriverAdapters = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
 
-/// Nothing is there that could be disturbed.
+/// True: there is no host's connection that could be disturbed.
 pub(super) fn may_try_wayland() -> bool {
     true
 }

@@ -336,8 +336,8 @@ mod on_unix {
         }
     }
 
-    /// Links lead to another folder, by relative and absolute paths, through several links, and to places where nothing is
-    /// yet.
+    /// Links lead to another folder, by relative and absolute paths, through several links, and to places where nothing
+    /// is yet.
     #[test]
     fn the_target_of_a_link_is_written() {
         let folder = Folder::new("links");

@@ -11,7 +11,7 @@ mod stack;
 #[cfg(target_os = "linux")]
 mod threads;
 
-/// Those that the lines below do not name.
+/// The functions that the lines below do not name.
 pub use super::bare::*;
 #[cfg(not(target_os = "android"))]
 pub use cancellation::Uncancelled;

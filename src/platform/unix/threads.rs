@@ -6,7 +6,7 @@ use std::ffi::c_void;
 use std::ptr::without_provenance_mut;
 use std::sync::OnceLock;
 
-/// What runs at the ends of threads.
+/// The work at the ends of threads.
 struct Ends {
     /// A key of the system's for values of threads, whose handler runs at a thread's end. The keys' handlers run in
     /// the order in which the keys were made, so it is made before the library that has others is loaded; and once

@@ -37,7 +37,7 @@ impl Drop for CopiedDescriptor {
         // Some drivers close what they refuse (Mesa 22.3's llvmpipe), and the number may be another file's by now.
         let file = |fd| descriptor_facts(fd).map(|found| (found.device, found.inode)).ok();
         if file(self.number).is_some_and(|copy| file(self.of) == Some(copy)) {
-            // It is open, and the copy that was made here.
+            // The number is open, and the copy that was made here.
             close_descriptor(self.number);
         }
     }
