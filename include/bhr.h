@@ -203,7 +203,7 @@ typedef int32_t BhrLogLevel;
 #define BHR_LOG_OFF 0   /**< No messages. */
 #define BHR_LOG_ERROR 1 /**< Every failed call, but for cancels, and errors of the graphics stack. */
 #define BHR_LOG_WARN 2  /**< Also trouble that failed no call, such as an adapter passed over. The default. */
-#define BHR_LOG_INFO 3  /**< Also cancels, and the adapter that was chosen, and why. */
+#define BHR_LOG_INFO 3  /**< Also cancels, why an adapter was chosen, and errors of the graphics stack about others. */
 #define BHR_LOG_DEBUG 4 /**< Also what the graphics stack (wgpu) reports about itself. */
 #define BHR_LOG_TRACE 5 /**< Everything: slow. */
 

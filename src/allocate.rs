@@ -4,6 +4,7 @@
 //! what the memory is for.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::platform::can_be_mapped;
 use std::fmt::Write;
 
 /// Bytes that must be left for small allocations (names, messages, queues, threads), which end the process where they
@@ -24,24 +25,6 @@ fn refused(bytes: usize, what: &str) -> Error {
         let _ = write!(message, "no memory for {what}, {bytes} bytes");
     }
     Error::new(ErrorKind::OutOfMemory, message)
-}
-
-/// Whether the system would give this much memory just now. The allocator may hold as much that was freed, but does
-/// not give it to every thread: glibc's new threads take theirs from the system, and end the process where it has
-/// none.
-#[cfg(unix)]
-fn can_be_mapped(bytes: usize) -> bool {
-    let access = libc::PROT_READ | libc::PROT_WRITE;
-    // SAFETY: a new mapping anywhere, which nobody knows of and nobody touches before it goes.
-    unsafe {
-        let place = libc::mmap(std::ptr::null_mut(), bytes, access, libc::MAP_PRIVATE | libc::MAP_ANON, -1, 0);
-        place != libc::MAP_FAILED && libc::munmap(place, bytes) == 0
-    }
-}
-
-#[cfg(not(unix))]
-fn can_be_mapped(bytes: usize) -> bool {
-    Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
 }
 
 /// An empty vector with room for `count` items. Errors: OUT_OF_MEMORY, naming `what`.

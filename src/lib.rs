@@ -12,12 +12,14 @@
 //! - [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files.
 //! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
 //! - `random`, `recent` (costly things that are kept), `deferred` (work that waits until a thread holds no lock of the
-//!   process), `allocate` (memory that may be refused), `thread_scope` (what the library's threads take over from the
-//!   threads that they work for), `platform` (what is asked of the system), [`error`].
+//!   process), `attempt` (what fails no call), `allocate` (memory that may be refused), `thread_scope` (what the
+//!   library's threads take over from the threads that they work for), `platform` (what is asked of the system),
+//!   [`error`].
 //!
 //! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms/imports.rs holds it.
 
 mod allocate;
+mod attempt;
 #[doc(hidden)]
 pub mod capi;
 pub mod cpu;

@@ -6,6 +6,7 @@
 mod made;
 mod presets;
 
+use crate::attempt;
 use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
@@ -157,6 +158,7 @@ impl Renderer {
         }
         let mut reasons = Vec::new();
         for adapter in found {
+            let _attempt = options.backend.is_none().then(attempt::begin);
             let name = adapter.info.name.clone();
             match check(&adapter).and_then(|()| Tracer::on_gpu(adapter)) {
                 Ok(tracer) => return Ok(tracer),

@@ -3,6 +3,7 @@
 //! taken when they have run. Locks: its own before the tracer's.
 
 use crate::allocate::{reserve, with_room};
+use crate::attempt;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submission, Swapchain, Texture};
 use crate::image::PixelFormat;
@@ -368,6 +369,7 @@ impl Presentation {
     }
 
     fn find(window: &Window, tracing: Option<WindowTracer<'_>>, validation: bool) -> Result<Self> {
+        let _attempt = attempt::begin();
         let mut reasons = Vec::new();
         let tried = tracing.as_ref().map(|tracing| tracing.adapter);
         if let Some(WindowTracer { adapter, device, tracer }) = tracing {

@@ -8,6 +8,7 @@ use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::image::{self, Alpha, ImageMut, Layout, Loaded, PixelFormat};
+use crate::platform::path_of_bytes;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
 use std::path::PathBuf;
@@ -192,13 +193,7 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
     if bytes.is_empty() {
         return Err(Error::argument("path is empty"));
     }
-    #[cfg(unix)]
-    return Ok(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes).into());
-    #[cfg(not(unix))]
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Ok(text.into()),
-        Err(_) => Err(Error::argument("path is not UTF-8")),
-    }
+    path_of_bytes(bytes).ok_or_else(|| Error::argument("path is not UTF-8"))
 }
 
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes

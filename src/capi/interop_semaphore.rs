@@ -5,7 +5,7 @@ use super::call::{keep, on_context};
 use super::context::BhrContext;
 use super::entry::{SuccessStatus, destroy, give_back, outside_callbacks};
 use super::interop_info::{BHR_HANDLE_HOST_POINTER, BHR_HANDLE_OPAQUE_FD, BhrHandleType};
-use super::interop_target::{BhrHandle, NO_HANDLE, close, read_handle};
+use super::interop_target::{BhrHandle, NO_HANDLE, read_handle};
 use super::log::{self, Sink};
 use super::message::LastMessage;
 use super::pointer::{Out, is_null, unknown};
@@ -13,6 +13,7 @@ use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
 use crate::gpu::{NOT_RUN, SemaphoreKind, SemaphoreOrigin};
 use crate::interop::Semaphore;
+use crate::platform::close_descriptor;
 use crate::thread_state::Call;
 use std::sync::Arc;
 use std::time::Duration;
@@ -155,7 +156,8 @@ pub unsafe extern "C" fn bhr_semaphore_import(
         })
     };
     if let Some(fd) = taken.filter(|_| status >= BHR_OK) {
-        close(fd);
+        // The host has given it away.
+        close_descriptor(fd);
     }
     status
 }

@@ -16,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{MemoryInfo, NOT_RUN, TargetOrigin, TargetShape};
 use crate::image::MAX_SIDE;
 use crate::interop::Target;
+use crate::platform::close_descriptor;
 use crate::thread_state::Call;
 use bytemuck::Zeroable;
 use std::ffi::c_void;
@@ -353,20 +354,10 @@ pub unsafe extern "C" fn bhr_target_import(
         })
     };
     if let Some(fd) = taken.filter(|_| status >= super::status::BHR_OK) {
-        close(fd);
+        // The host has given it away.
+        close_descriptor(fd);
     }
     status
-}
-
-/// Closes a descriptor of the host's that bhr has taken over.
-pub(super) fn close(fd: i32) {
-    #[cfg(unix)]
-    // SAFETY: it was the host's, which has given it away.
-    unsafe {
-        libc::close(fd);
-    }
-    #[cfg(not(unix))]
-    let _ = fd;
 }
 
 /// Sets struct_size and clears the rest. @since 0.2.0

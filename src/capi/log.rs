@@ -5,6 +5,7 @@
 
 use super::callback::{InsideCallback, in_log_callback};
 use super::gate::Gate;
+use crate::attempt;
 use crate::deferred::{self, Outcome};
 use crate::error::Result;
 use crate::thread_scope::{self, ThreadScope};
@@ -22,7 +23,7 @@ pub const BHR_LOG_OFF: BhrLogLevel = 0;
 pub const BHR_LOG_ERROR: BhrLogLevel = 1;
 /// Also trouble that failed no call, such as an adapter passed over. The default.
 pub const BHR_LOG_WARN: BhrLogLevel = 2;
-/// Also cancels, and the adapter that was chosen, and why.
+/// Also cancels, why an adapter was chosen, and errors of the graphics stack about others.
 pub const BHR_LOG_INFO: BhrLogLevel = 3;
 /// Also what the graphics stack (wgpu) reports about itself.
 pub const BHR_LOG_DEBUG: BhrLogLevel = 4;
@@ -224,9 +225,10 @@ fn is_own(record: &Record<'_>) -> bool {
 }
 
 /// The graphics stack logs every buffer and pipeline as info. To a host that is detail, so its messages below warnings
-/// count one level less.
+/// count one level less. Errors of an attempt after which another follows are no more than the reason for that.
 fn host_level(record: &Record<'_>) -> Level {
     match record.level() {
+        Level::Error if !is_own(record) && attempt::is_under_way() => Level::Info,
         Level::Info if !is_own(record) => Level::Debug,
         Level::Debug if !is_own(record) => Level::Trace,
         level => level,
@@ -289,6 +291,15 @@ mod tests {
         assert_eq!((said(&one, "from outside").len(), said(&two, "from outside").len()), (1, 1));
         assert_eq!((said(&one, "only detail"), said(&two, "only detail").len()), (vec![BHR_LOG_INFO], 0));
         assert_eq!(said(&one, "wgpu_core::device: chatter"), [BHR_LOG_DEBUG]);
+        ::log::error!(target: "wgpu_hal", "in earnest");
+        {
+            let _attempt = attempt::begin();
+            ::log::error!(target: "wgpu_hal", "as a try");
+            ::log::error!("about a try");
+        }
+        ::log::error!(target: "wgpu_hal", "after the try");
+        assert_eq!([said(&one, "in earnest"), said(&one, "after the try")], [[BHR_LOG_ERROR], [BHR_LOG_ERROR]]);
+        assert_eq!([said(&one, "as a try"), said(&one, "about a try")], [[BHR_LOG_INFO], [BHR_LOG_ERROR]]);
         drop(first);
         ::log::warn!("after the first has gone");
         assert_eq!((said(&one, "has gone").len(), said(&two, "has gone").len()), (0, 1));

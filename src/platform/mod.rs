@@ -1,14 +1,37 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Systems behind one face: what the library asks of the system itself, and not of the files, windows or drivers that
-//! other rooms are about. Each function here is there on every system. Knows nothing of bhr.
+//! Systems and processors behind one face: what the library asks of the system itself, and not of the windows or
+//! drivers that other rooms are about. Each function here is there on every system, with one signature, so that who
+//! calls it need not know where it runs. Knows nothing of bhr.
+//!
+//! bare.rs has everything, as far as it goes on a system of which nothing is known, with the comments that hold for
+//! all; a system's own file puts what it does better in its place.
 
+#![cfg_attr(
+    target_vendor = "apple",
+    allow(dead_code, unused_imports, reason = "no driver there passes anything by a descriptor")
+)]
+
+#[allow(dead_code, reason = "systems have most of it themselves")]
+mod bare;
+mod control_words;
+mod system;
+#[cfg(unix)]
+mod unix;
 #[cfg(windows)]
 mod windows;
 
+#[cfg(not(any(unix, windows)))]
+use bare as here;
+#[cfg(unix)]
+use unix as here;
 #[cfg(windows)]
-pub use windows::stay_mapped;
+use windows as here;
 
-/// Keeps the library in the process for good: threads of its own and of drivers run on in it. ELF's linker flag
-/// `nodelete` (build.rs) does that without a call.
-#[cfg(not(windows))]
-pub fn stay_mapped() {}
+pub use bare::{DescriptorFacts, FileForm, NoCopy, NotFound};
+pub use control_words::ControlWords;
+pub use here::{
+    Uncancelled, around_thread_end, at_exit, block_file_size_signal, can_be_mapped, close_descriptor, close_file,
+    copy_descriptor, descriptor_facts, is_same_file, keep_mode, library_function, lower_priority, may_follow_link,
+    never_wider, on_enough_stack, on_host_stack, open_without_waiting, path_of_bytes, stay_mapped, sync_folder,
+};
+pub use system::{SYSTEM, System};

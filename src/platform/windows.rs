@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Windows.
 
+/// Those that this file does not have.
+pub use super::bare::*;
+
 use std::ffi::c_void;
 use std::ptr::{from_ref, null_mut};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,8 +18,8 @@ const GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS: u32 = 4;
 
 static PINNED: AtomicBool = AtomicBool::new(false);
 
-/// Keeps the library in the process for good: after a FreeLibrary that unmaps it, threads of its own and of drivers
-/// would run into memory that is no longer there. Where bhr is linked into a program, that is what stays.
+/// After a FreeLibrary that unmaps the library, threads of its own and of drivers would run into memory that is no
+/// longer there. Where it is linked into a program, that is what stays.
 pub fn stay_mapped() {
     if PINNED.load(Ordering::Relaxed) {
         return;

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The state of a thread that code relies upon without asking, and that a host may have changed: how floating point
-//! rounds and whether it traps (control_words.rs), whether the thread may be cancelled (cancellation.rs), and how much
-//! stack is left (stack.rs). A [`Call`] sets it as bhr, drivers and codecs need it, and gives it back; [`call_host`]
-//! gives it back for the length of a callback. Knows nothing of what the calls do.
+//! rounds and whether it traps, whether the thread may be cancelled, and how much stack is left. A [`Call`] sets it as
+//! bhr, drivers and codecs need it, and gives it back; [`call_host`] gives it back for the length of a callback. The
+//! room `platform` knows how that is done; this one nothing of what the calls do.
 
-mod cancellation;
-mod control_words;
-mod stack;
+pub use crate::platform::on_enough_stack;
 
-pub use stack::on_enough_stack;
-
-use crate::platform;
-use cancellation::Uncancelled;
-use control_words::ControlWords;
+use crate::platform::{self, ControlWords, Uncancelled, on_host_stack};
 use std::cell::Cell;
 use std::marker::PhantomData;
 
@@ -58,12 +52,12 @@ pub fn call_host<R>(code: impl FnOnce() -> R) -> R {
     let Some(host) = HOST_WORDS.get() else {
         // A thread of bhr's, or of a driver's, which gets its own words back.
         let own = ControlWords::of_thread();
-        let result = stack::on_host_stack(code);
+        let result = on_host_stack(code);
         own.set();
         return result;
     };
     host.set();
-    let result = stack::on_host_stack(code);
+    let result = on_host_stack(code);
     HOST_WORDS.set(Some(ControlWords::of_thread()));
     ControlWords::set_default();
     result

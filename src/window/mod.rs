@@ -4,19 +4,19 @@
 //! `window` every window is UNSUPPORTED.
 
 pub(crate) mod claim;
-#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
-mod visual;
-#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
-mod wayland;
 mod native;
-#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
-mod x11;
+#[cfg_attr(
+    not(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android"))),
+    path = "free_desktop_absent.rs"
+)]
+mod free_desktop;
 #[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
 pub(crate) mod memory;
 
 pub use native::{Handles, NativeWindow};
 
 use crate::error::Result;
+use free_desktop::{FramePacer, X11Window};
 
 /// How frames reach the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,17 +42,15 @@ pub trait Pacer: Send {
 /// A window of the host's that was looked at and found there, with what it takes to present to it.
 pub struct Window {
     native: NativeWindow,
-    #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
-    x11: Option<x11::X11Window>,
+    x11: Option<X11Window>,
 }
 
-#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 impl Window {
     /// Errors: INVALID_ARGUMENT for a window that is not there; UNSUPPORTED for a kind that this platform does not
-    /// have.
+    /// have, for all without the feature `window`.
     pub fn open(native: NativeWindow) -> Result<Self> {
         native.check_platform()?;
-        Ok(Self { native, x11: x11::X11Window::open(&native)? })
+        Ok(Self { native, x11: X11Window::open(&native)? })
     }
 
     /// The handle to present through.
@@ -72,7 +70,7 @@ impl Window {
 
     /// Bits of a pixel that count, where the platform knows them: X11.
     pub fn depth(&self) -> Option<u8> {
-        self.x11.as_ref().map(|window| window.depth)
+        self.x11.as_ref().map(|window| window.depth())
     }
 
     /// The complaints of the window's server about frames that nobody waited for.
@@ -86,7 +84,7 @@ impl Window {
     pub fn pacer(&self) -> Result<Option<Box<dyn Pacer>>> {
         match self.native {
             NativeWindow::Wayland { display, surface } => {
-                wayland::FramePacer::new(display, surface).map(|pacer| Some(Box::new(pacer) as Box<dyn Pacer>))
+                FramePacer::new(display, surface).map(|pacer| Some(Box::new(pacer) as Box<dyn Pacer>))
             }
             _ => Ok(None),
         }
@@ -94,46 +92,5 @@ impl Window {
 
     pub(crate) fn claim_key(&self) -> claim::Key {
         self.x11.as_ref().map_or_else(|| self.native.claim_key(), |window| window.claim_key())
-    }
-}
-
-#[cfg(not(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android"))))]
-impl Window {
-    /// Errors: UNSUPPORTED for a kind that this platform does not have, for all without the feature `window`.
-    pub fn open(native: NativeWindow) -> Result<Self> {
-        native.check_platform()?;
-        Ok(Self { native })
-    }
-
-    /// The handle to present through.
-    pub fn handles(&self) -> Handles {
-        self.native.handles()
-    }
-
-    /// Whether it is still there, as far as this platform tells.
-    pub fn exists(&self) -> bool {
-        true
-    }
-
-    /// Its size in pixels, where the platform knows it: X11.
-    pub fn size(&self) -> Option<[u32; 2]> {
-        None
-    }
-
-    /// Bits of a pixel that count, where the platform knows them: X11.
-    pub fn depth(&self) -> Option<u8> {
-        None
-    }
-
-    /// The complaints of the window's server about frames that nobody waited for.
-    pub(crate) fn drop_errors(&self) {}
-
-    /// `None`: the driver's VSYNC is good enough.
-    pub fn pacer(&self) -> Result<Option<Box<dyn Pacer>>> {
-        Ok(None)
-    }
-
-    pub(crate) fn claim_key(&self) -> claim::Key {
-        self.native.claim_key()
     }
 }

@@ -3,6 +3,7 @@
 
 use super::claim;
 use crate::error::{Error, Result};
+use crate::platform::{SYSTEM, System};
 use raw_window_handle as rwh;
 use std::ffi::c_void;
 use std::num::{NonZeroIsize, NonZeroU32};
@@ -63,14 +64,12 @@ impl NativeWindow {
             return Err(Error::unsupported("this library was built without windows (cargo feature `window`)"));
         }
         let here = match self {
-            Self::Xlib { .. } | Self::Xcb { .. } | Self::Wayland { .. } => {
-                cfg!(all(unix, not(target_vendor = "apple"), not(target_os = "android")))
-            }
-            Self::Win32 { .. } => cfg!(windows),
-            Self::AppKit { .. } => cfg!(target_os = "macos"),
-            Self::UiKit { .. } => cfg!(target_os = "ios"),
-            Self::MetalLayer { .. } => cfg!(target_vendor = "apple"),
-            Self::Android { .. } => cfg!(target_os = "android"),
+            Self::Xlib { .. } | Self::Xcb { .. } | Self::Wayland { .. } => SYSTEM == System::FreeDesktop,
+            Self::Win32 { .. } => SYSTEM == System::Windows,
+            Self::AppKit { .. } => SYSTEM == System::MacOs,
+            Self::UiKit { .. } => SYSTEM == System::Ios,
+            Self::MetalLayer { .. } => SYSTEM.is_apples(),
+            Self::Android { .. } => SYSTEM == System::Android,
         };
         if here {
             return Ok(());

@@ -10,6 +10,7 @@ mod mirrors;
 mod modules;
 mod names;
 mod shaders;
+mod systems;
 mod words;
 mod written;
 

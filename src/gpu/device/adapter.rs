@@ -5,7 +5,9 @@ use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
 use super::instance::{self, DriverAdapters};
 use super::{driver_lock, loader, process_end};
+use crate::attempt;
 use crate::error::{Error, Result};
+use crate::platform::{SYSTEM, System};
 use crate::tracer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,7 +42,7 @@ impl Adapter {
 
     /// An adapter of a host's instance, which no list keeps. Errors: UNSUPPORTED with the reason when it cannot run the
     /// tracer.
-    #[cfg(not(target_vendor = "apple"))]
+    #[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "hosts' devices are Vulkan's"))]
     pub(in crate::gpu) fn of_host(
         raw: wgpu::Adapter,
         instance: wgpu::Instance,
@@ -58,7 +60,6 @@ impl Adapter {
 
     /// By what other interfaces know it. Zeros where that is not known.
     pub fn ids(&self) -> AdapterIds {
-        #[cfg(not(target_vendor = "apple"))]
         if self.info.backend == Backend::Vulkan {
             return self.raw().ok().and_then(super::vulkan::parts::ids).unwrap_or_default();
         }
@@ -161,16 +162,15 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 
 /// Why a search for this backend alone has found nothing, and what is to be installed where that can be named.
 pub fn absence(backend: Backend) -> &'static str {
-    const LINUX: bool = cfg!(all(unix, not(target_vendor = "apple"), not(target_os = "android")));
     match backend {
         Backend::Vulkan => loader::absence(),
-        Backend::Gl if LINUX => {
+        Backend::Gl if SYSTEM == System::FreeDesktop => {
             "no OpenGL ES 3.1 with compute shaders through EGL; Debian and Ubuntu: libegl1 and libgl1-mesa-dri, or the \
              GPU's own driver"
         }
         Backend::Gl => "no OpenGL ES 3.1 with compute shaders",
-        Backend::Metal if !cfg!(target_vendor = "apple") => "Metal is there on macOS and iOS only",
-        Backend::D3d12 if !cfg!(windows) => "Direct3D 12 is there on Windows only",
+        Backend::Metal if !SYSTEM.is_apples() => "Metal is there on macOS and iOS only",
+        Backend::D3d12 if SYSTEM != System::Windows => "Direct3D 12 is there on Windows only",
         Backend::Metal | Backend::D3d12 | Backend::Cpu => "the system lists no device",
     }
 }
@@ -308,7 +308,7 @@ static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
 /// the contexts of a host that uses it too. So the first instance stays.
 fn keep_display(instance: Option<wgpu::Instance>) {
     static KEPT: OnceLock<wgpu::Instance> = OnceLock::new();
-    if let Some(instance) = instance.filter(|_| !cfg!(windows)) {
+    if let Some(instance) = instance.filter(|_| SYSTEM != System::Windows) {
         KEPT.get_or_init(|| instance);
     }
 }
@@ -320,6 +320,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> Dri
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     process_end::watch();
     let _driver = driver_lock::lock();
+    let _attempt = attempt::begin();
     let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
     process_end::watch();
     let found = found.unwrap_or_else(|_| {

@@ -2,10 +2,10 @@
 //! Buffers on a device: checked against its limits before wgpu is asked, and counted while they exist.
 
 use super::counted::Counted;
+use super::interfaces::while_it_exists;
 use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
-use crate::tracer::Backend;
 use std::ops::Deref;
 
 /// A [`wgpu::Buffer`] that [`Device::bytes`] counts until it is dropped. (Bind groups that hold it keep its memory
@@ -50,17 +50,7 @@ impl Device {
     ) -> Result<T> {
         // The messages of `work` go to a host, whose callback may wait for a thread that asks wgpu.
         let holding = hold();
-        let done = match self.backend() {
-            #[cfg(not(target_vendor = "apple"))]
-            Backend::Vulkan => while_it_exists::<wgpu::hal::api::Vulkan, _>(buffer, work),
-            #[cfg(all(feature = "gl", not(target_vendor = "apple")))]
-            Backend::Gl => while_it_exists::<wgpu::hal::api::Gles, _>(buffer, work),
-            #[cfg(target_vendor = "apple")]
-            Backend::Metal => while_it_exists::<wgpu::hal::api::Metal, _>(buffer, work),
-            #[cfg(windows)]
-            Backend::D3d12 => while_it_exists::<wgpu::hal::api::Dx12, _>(buffer, work),
-            _ => None,
-        };
+        let done = while_it_exists(self.backend(), buffer, work);
         drop(holding);
         let gone = || Err(self.explain(Error::internal("mapped memory was freed before it was used")));
         done.unwrap_or_else(gone)
@@ -84,13 +74,6 @@ impl Device {
             )),
         }
     }
-}
-
-/// `None`: it was destroyed, or is another interface's.
-fn while_it_exists<A: wgpu::hal::Api, T>(buffer: &wgpu::Buffer, work: impl FnOnce() -> T) -> Option<T> {
-    // SAFETY: nothing is done with the interface's own buffer but knowing that it is there.
-    let _exists = unsafe { buffer.as_hal::<A>() }?;
-    Some(work())
 }
 
 impl Deref for Buffer {

@@ -15,6 +15,7 @@
 //! no other thread but one that it has just started and that takes no lock (`gl_guard`).
 
 use crate::deferred::{Holding, hold};
+use crate::platform::around_thread_end;
 use parking_lot::{ReentrantMutex, ReentrantMutexGuard, const_reentrant_mutex};
 
 /// Reentrant, as what is dropped under it may be the last to hold something that is dropped under it too.
@@ -28,7 +29,7 @@ pub struct DriverLock {
 }
 
 pub fn lock() -> DriverLock {
-    thread_end::guard();
+    guard();
     let holding = hold();
     DriverLock { _lock: DRIVER.lock(), _holding: holding }
 }
@@ -46,95 +47,50 @@ pub fn is_held() -> bool {
     DRIVER.is_owned_by_current_thread()
 }
 
-pub use thread_end::guard;
-
-/// The end of threads that have used a driver.
-#[cfg(target_os = "linux")]
-mod thread_end {
-    use super::DRIVER;
-    use std::cell::Cell;
-    use std::ffi::c_void;
-    use std::ptr::without_provenance_mut;
-    use std::sync::OnceLock;
-
-    /// A key of the system's for values of threads, whose handler runs at a thread's end. The keys' handlers run in
-    /// the order in which the keys were made, so it is made before a driver is loaded; and once more in a second round
-    /// if the handler sets the value again. So the lock is held from its first turn, before the driver's handlers, to
-    /// its second, after them.
-    static KEY: OnceLock<Option<libc::pthread_key_t>> = OnceLock::new();
-
-    const USES_DRIVER: usize = 1;
-    const HOLDS_LOCK: usize = 2;
-
-    thread_local!(static GUARDED: Cell<bool> = const { Cell::new(false) });
-
-    /// To be called by each thread before it uses a driver.
-    pub fn guard() {
-        if GUARDED.try_with(|guarded| guarded.replace(true)).unwrap_or(true) {
-            return;
-        }
-        let key = KEY.get_or_init(|| {
-            let mut key = 0;
-            // SAFETY: the handler lives as long as the process, as the library is never unmapped.
-            (unsafe { libc::pthread_key_create(&mut key, Some(on_end)) } == 0).then_some(key)
-        });
-        if let Some(key) = key {
-            set(*key, USES_DRIVER);
-        }
-    }
-
-    fn set(key: libc::pthread_key_t, value: usize) -> bool {
-        // SAFETY: the key exists; the value is a number, and no memory.
-        unsafe { libc::pthread_setspecific(key, without_provenance_mut(value)) == 0 }
-    }
-
-    unsafe extern "C" fn on_end(value: *mut c_void) {
-        let Some(Some(key)) = KEY.get() else { return };
-        if value.addr() == HOLDS_LOCK {
-            // SAFETY: this thread holds it since its first turn.
-            unsafe { DRIVER.force_unlock() };
-        } else if set(*key, HOLDS_LOCK) {
-            std::mem::forget(DRIVER.lock());
-        }
-    }
-
-    #[cfg(test)]
-    mod tests {
-        use super::super::{guard, is_held};
-        use super::*;
-        use std::sync::atomic::{AtomicU32, Ordering};
-
-        static SEEN: AtomicU32 = AtomicU32::new(0);
-
-        /// In the place of a driver's handler: counts the ends of threads that hold the lock, and of those that do not.
-        unsafe extern "C" fn at_end(_: *mut c_void) {
-            SEEN.fetch_add(if is_held() { 1 } else { 1 << 16 }, Ordering::Relaxed);
-        }
-
-        #[test]
-        fn a_thread_that_used_a_driver_ends_alone() {
-            guard();
-            let mut of_driver = 0;
-            // SAFETY: the handler lives as long as the test.
-            assert_eq!(unsafe { libc::pthread_key_create(&mut of_driver, Some(at_end)) }, 0);
-            for (uses, seen) in [(true, 1), (true, 2), (false, 2 + (1 << 16))] {
-                let thread = std::thread::spawn(move || {
-                    if uses {
-                        guard();
-                    }
-                    set(of_driver, USES_DRIVER);
-                    assert!(!is_held());
-                });
-                thread.join().unwrap();
-                assert_eq!(SEEN.load(Ordering::Relaxed), seen);
-                // The lock is free again: another thread gets it.
-                std::thread::spawn(|| drop(super::super::lock())).join().unwrap();
-            }
-        }
-    }
+/// To be called by each thread before it uses a driver. At the end of the thread the lock is held from before the
+/// driver's handlers until after them, where the system tells of that.
+pub fn guard() {
+    around_thread_end(
+        || std::mem::forget(DRIVER.lock()),
+        // SAFETY: this thread holds it since the other function.
+        || unsafe { DRIVER.force_unlock() },
+    );
 }
 
-#[cfg(not(target_os = "linux"))]
-mod thread_end {
-    pub fn guard() {}
+// Other systems do not tell of the ends of threads.
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use std::ffi::c_void;
+    use std::ptr::without_provenance_mut;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    static SEEN: AtomicU32 = AtomicU32::new(0);
+
+    /// In the place of a driver's handler: counts the ends of threads that hold the lock, and of those that do not.
+    unsafe extern "C" fn at_end(_: *mut c_void) {
+        SEEN.fetch_add(if is_held() { 1 } else { 1 << 16 }, Ordering::Relaxed);
+    }
+
+    #[test]
+    fn a_thread_that_used_a_driver_ends_alone() {
+        guard();
+        let mut of_driver = 0;
+        // SAFETY: the handler lives as long as the test.
+        assert_eq!(unsafe { libc::pthread_key_create(&mut of_driver, Some(at_end)) }, 0);
+        for (uses, seen) in [(true, 1), (true, 2), (false, 2 + (1 << 16))] {
+            let thread = std::thread::spawn(move || {
+                if uses {
+                    guard();
+                }
+                // SAFETY: the key exists; the value is a number, and no memory.
+                assert_eq!(unsafe { libc::pthread_setspecific(of_driver, without_provenance_mut(1)) }, 0);
+                assert!(!is_held());
+            });
+            thread.join().unwrap();
+            assert_eq!(SEEN.load(Ordering::Relaxed), seen);
+            // The lock is free again: another thread gets it.
+            std::thread::spawn(|| drop(lock())).join().unwrap();
+        }
+    }
 }

@@ -12,6 +12,7 @@ use super::driver_lock;
 use super::gl_guard::ContextGuard;
 use super::process_end;
 use crate::error::{Error, ErrorKind, Result, panic_text};
+use crate::platform::{SYSTEM, System};
 use crate::thread_scope;
 use crate::thread_state::begin_own_thread;
 use crate::tracer::Progress;
@@ -46,7 +47,7 @@ impl DisplayAge {
 
     /// Notes an end of the display of this age, unless another thread has.
     fn end(self) {
-        if !cfg!(windows) {
+        if SYSTEM != System::Windows {
             let _ = ENDS.compare_exchange(self.0, self.0 + 1, Ordering::SeqCst, Ordering::SeqCst);
         }
     }

@@ -6,17 +6,17 @@ use super::process_end;
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::target::{GpuTarget, TargetRead};
 use super::turns::InUse;
+use super::vulkan::barrier;
+use super::vulkan::semaphore::{stage, unstage};
 use super::wgpu_device::{Device, Uploads};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::sync::Arc;
 
 /// Waiting goes in pieces of this, between which the device may be lost.
-#[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
 /// The part of a frame's handover that goes with one submission.
-#[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "nothing is shared with hosts there"))]
 #[derive(Default)]
 pub struct Handover<'a> {
     /// The targets of a frame that this submission is the first to write.
@@ -94,9 +94,7 @@ impl Device {
         encoder: Option<wgpu::CommandEncoder>,
         handover: &Handover<'_>,
     ) -> Result<wgpu::SubmissionIndex> {
-        #[cfg(not(target_vendor = "apple"))]
         if let Some(parts) = &self.vulkan {
-            use super::vulkan::barrier;
             let mut encoders = Vec::with_capacity(4);
             if !handover.reads.is_empty() {
                 let mut reading = self.encoder("reading targets")?;
@@ -162,13 +160,12 @@ impl Device {
             let _holding = hold();
             let _inside = process_end::enter();
             let _turn = self.turns.take();
-            self.stage(queue, waits, signals);
+            stage(queue, raw(waits), raw(signals));
             let submitted = self.scoped("submitting work", |_| queue.submit(commands));
             if submitted.is_err() {
-                self.unstage(queue, waits, signals);
+                unstage(queue, raw(waits), raw(signals));
             }
             let submitted = submitted?;
-            #[cfg(not(target_vendor = "apple"))]
             for SemaphoreUse { semaphore, value } in signals {
                 value.iter().for_each(|value| semaphore.has_submitted(*value));
             }
@@ -214,9 +211,8 @@ impl Device {
 
     /// With Mesa's llvmpipe (22.3), whose vkQueueSubmit blocks, for ever if it comes to that, while a submission before
     /// waits for a timeline: waits for those here. Errors: DEVICE_LOST after the time of a hang.
-    #[cfg(not(target_vendor = "apple"))]
     fn wait_for_waits(&self) -> Result<()> {
-        if !self.vulkan.as_ref().is_some_and(|parts| parts.llvmpipe) {
+        if !self.vulkan.as_ref().is_some_and(|parts| parts.blocks_in_submit()) {
             return Ok(());
         }
         self.let_go_of_done();
@@ -233,49 +229,8 @@ impl Device {
         }
         Ok(())
     }
+}
 
-    #[cfg(target_vendor = "apple")]
-    fn wait_for_waits(&self) -> Result<()> {
-        Ok(())
-    }
-
-    #[cfg(not(target_vendor = "apple"))]
-    fn stage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
-        if waits.is_empty() && signals.is_empty() {
-            return;
-        }
-        // SAFETY: semaphores are added, which live until the submission has run.
-        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
-        for SemaphoreUse { semaphore, value } in waits {
-            hal.add_wait_semaphore(semaphore.raw(), *value, ash::vk::PipelineStageFlags::ALL_COMMANDS);
-        }
-        for SemaphoreUse { semaphore, value } in signals {
-            // A timeline that has gone further already must not go back.
-            if value.is_none_or(|value| semaphore.may_submit(value)) {
-                hal.add_signal_semaphore(semaphore.raw(), *value);
-            }
-        }
-    }
-
-    /// After a submission that was refused: what it did not take must not go with the next one.
-    #[cfg(not(target_vendor = "apple"))]
-    fn unstage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
-        if waits.is_empty() && signals.is_empty() {
-            return;
-        }
-        // SAFETY: semaphores are removed.
-        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
-        for SemaphoreUse { semaphore, .. } in waits {
-            hal.remove_wait_semaphore(semaphore.raw());
-        }
-        for SemaphoreUse { semaphore, .. } in signals {
-            hal.remove_signal_semaphore(semaphore.raw());
-        }
-    }
-
-    #[cfg(target_vendor = "apple")]
-    fn stage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
-
-    #[cfg(target_vendor = "apple")]
-    fn unstage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
+fn raw(uses: &[SemaphoreUse]) -> impl ExactSizeIterator<Item = (&GpuSemaphore, Option<u64>)> {
+    uses.iter().map(|one| (&*one.semaphore, one.value))
 }

@@ -12,8 +12,9 @@
 //! Exit handlers and destructors that the host registered earlier run after those of the drivers. A call into a driver
 //! may crash by then, so on that thread contexts refuse their calls, and what they have of the driver is left as it is.
 
+use crate::platform;
 use std::cell::Cell;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,6 @@ use std::time::{Duration, Instant};
 /// are destroyed.
 const LONGEST: Duration = Duration::from_secs(10);
 /// How long threads are held up: handlers and destructors take less, unless they wait for something.
-#[cfg(any(unix, test))]
 const PAUSE: Duration = Duration::from_secs(2);
 /// How long threads are held up after something was to be destroyed, counted from the last such thing: what the host
 /// lent it may be gone.
@@ -137,7 +137,6 @@ pub fn abandon() {
 }
 
 /// The process ends on this thread.
-#[cfg(any(unix, test))]
 fn close(deadline: Instant) {
     ENDING.store(this_thread().unwrap_or(0), Ordering::SeqCst);
     shut(deadline, PAUSE);
@@ -166,39 +165,23 @@ fn shut(deadline: Instant, pause: Duration) {
 /// compilers late: exit handlers run in the opposite order of their registration, and one of these is to run before
 /// each of the drivers'.
 pub fn watch() {
-    #[cfg(unix)]
-    handler::register();
-}
-
-#[cfg(unix)]
-mod handler {
-    use super::*;
-    use std::sync::atomic::AtomicU32;
-
     /// Registrations at most: a process has few drivers, but may open many devices.
     const MOST: u32 = 64;
-
     static COUNT: AtomicU32 = AtomicU32::new(0);
-    /// The process whose threads are counted: a forked one has none of them.
-    static PROCESS: OnceLock<libc::pid_t> = OnceLock::new();
-
-    pub fn register() {
-        // SAFETY: plain system calls; the handler lives as long as the process, as the library is never unmapped.
-        unsafe {
-            PROCESS.get_or_init(|| libc::getpid());
-            if COUNT.fetch_add(1, Ordering::Relaxed) < MOST {
-                libc::atexit(at_exit);
-            }
-        }
+    PROCESS.get_or_init(std::process::id);
+    if COUNT.fetch_add(1, Ordering::Relaxed) < MOST {
+        platform::at_exit(at_exit);
     }
+}
 
-    extern "C" fn at_exit() {
-        // SAFETY: a plain system call.
-        let of_this_process = PROCESS.get() == Some(&unsafe { libc::getpid() });
-        // Several handlers are registered; the first one that runs does it all.
-        if of_this_process && ENDING.load(Ordering::SeqCst) == 0 {
-            close(longest());
-        }
+/// The process whose threads are counted: a forked one has none of them.
+static PROCESS: OnceLock<u32> = OnceLock::new();
+
+extern "C" fn at_exit() {
+    let of_this_process = PROCESS.get() == Some(&std::process::id());
+    // Several handlers are registered; the first one that runs does it all.
+    if of_this_process && ENDING.load(Ordering::SeqCst) == 0 {
+        close(longest());
     }
 }
 

@@ -1,48 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Semaphores as frames use them. The folder `vulkan` makes them; no other interface does.
 
-#[cfg(target_vendor = "apple")]
-use crate::error::Result;
 use std::sync::Arc;
 
-#[cfg(not(target_vendor = "apple"))]
 pub use super::vulkan::semaphore::GpuSemaphore;
-
-/// No interface here has semaphores.
-#[cfg(target_vendor = "apple")]
-pub enum GpuSemaphore {}
-
-/// None is ever made.
-#[cfg(target_vendor = "apple")]
-impl GpuSemaphore {
-    pub fn export(&self) -> Result<i32> {
-        match *self {}
-    }
-
-    pub fn handle(&self) -> u64 {
-        match *self {}
-    }
-
-    pub fn check_value(&self, _: u64) -> Result<()> {
-        match *self {}
-    }
-
-    pub fn ask(&self, _: u64) -> Result<()> {
-        match *self {}
-    }
-
-    pub fn withdraw(&self, _: u64) {
-        match *self {}
-    }
-
-    pub fn wait(&self, _: u64, _: std::time::Duration) -> Result<bool> {
-        match *self {}
-    }
-
-    pub fn signal(&self, _: u64) -> Result<()> {
-        match *self {}
-    }
-}
 
 /// A semaphore, and the value that a timeline is to have; none for binary ones.
 #[derive(Clone)]

@@ -9,15 +9,11 @@ use super::external::{
 };
 use super::semaphores::GpuSemaphore;
 use super::target::GpuTarget;
-#[cfg(not(target_vendor = "apple"))]
 use super::vulkan_host;
 use super::wgpu_device::Device;
 use crate::error::Result;
-#[cfg(target_vendor = "apple")]
-use crate::tracer::Backend;
 use std::sync::Arc;
 
-#[cfg(not(target_vendor = "apple"))]
 impl Device {
     fn parts(&self) -> Result<&Arc<super::vulkan::parts::VulkanParts>> {
         self.vulkan.as_ref().map_or_else(|| shares_nothing(self.backend()), Ok)
@@ -50,52 +46,15 @@ impl Device {
     }
 }
 
-#[cfg(target_vendor = "apple")]
-impl Device {
-    /// The handles that the device shares: none.
-    pub fn sharing(&self) -> Sharing {
-        Sharing::default()
-    }
-
-    /// Errors: UNSUPPORTED.
-    pub fn target(&self, _: TargetShape, _: TargetOrigin) -> Result<GpuTarget> {
-        shares_nothing(self.backend())
-    }
-
-    /// Errors: UNSUPPORTED.
-    pub fn export_target(&self, _: &GpuTarget) -> Result<i32> {
-        shares_nothing(self.backend())
-    }
-
-    /// Errors: UNSUPPORTED.
-    pub fn semaphore(&self, _: SemaphoreKind, _: SemaphoreOrigin) -> Result<GpuSemaphore> {
-        shares_nothing(self.backend())
-    }
-}
-
 /// The requirements of instances (without a physical device), or of devices. Errors: INVALID_ARGUMENT; UNSUPPORTED.
-#[cfg(not(target_vendor = "apple"))]
 pub fn vulkan_requirements(host: Option<&HostVulkan>) -> Result<Requirements> {
     match host {
         Some(host) => vulkan_host::of_device(host),
-        None => Ok(vulkan_host::of_instance()),
+        None => vulkan_host::of_instance(),
     }
 }
 
 /// An adapter on which a device is the host's. Errors: INVALID_ARGUMENT; UNSUPPORTED.
-#[cfg(not(target_vendor = "apple"))]
 pub fn host_adapter(host: HostVulkan, release: &Arc<ReleaseGuard>) -> Result<Adapter> {
     vulkan_host::adapter(host, release)
-}
-
-/// Errors: UNSUPPORTED.
-#[cfg(target_vendor = "apple")]
-pub fn vulkan_requirements(_: Option<&HostVulkan>) -> Result<Requirements> {
-    shares_nothing(Backend::Metal)
-}
-
-/// Errors: UNSUPPORTED.
-#[cfg(target_vendor = "apple")]
-pub fn host_adapter(_: HostVulkan, _: &Arc<ReleaseGuard>) -> Result<Adapter> {
-    shares_nothing(Backend::Metal)
 }

@@ -61,15 +61,15 @@ fn instance_extensions() -> &'static [*const c_char] {
     &LIST.0
 }
 
-/// The requirements of instances.
-pub(in crate::gpu) fn of_instance() -> Requirements {
+/// The requirements of instances. Errors: none, where there is Vulkan.
+pub(in crate::gpu) fn of_instance() -> Result<Requirements> {
     let instance_extensions = instance_extensions();
-    Requirements {
+    Ok(Requirements {
         api_version: vk::API_VERSION_1_3,
         instance_extensions,
         device_extensions: &[],
         features: std::ptr::null(),
-    }
+    })
 }
 
 /// The host's function that finds functions. Errors: INVALID_ARGUMENT for NULL, or one that does not know what every

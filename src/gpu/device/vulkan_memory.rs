@@ -4,7 +4,6 @@
 
 use super::external::{HOST_POINTER, MemoryInfo, NOT_RUN, OPAQUE_FD, ReleaseGuard, TargetOrigin, TargetShape};
 use super::target::{GpuTarget, TargetResource};
-#[cfg(unix)]
 use super::vulkan::descriptor::{CopiedDescriptor, check_descriptor, check_kind};
 use super::vulkan::failed;
 use super::vulkan::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
@@ -155,7 +154,6 @@ impl<'a> Made<'a> {
         Ok(())
     }
 
-    #[cfg(unix)]
     fn import(&mut self, fd: i32, info: &MemoryInfo) -> Result<()> {
         self.check_memory(info)?;
         check_descriptor(fd, info.allocation_size, self.parts.llvmpipe)?;
@@ -179,11 +177,6 @@ impl<'a> Made<'a> {
         copy.taken();
         self.memory = memory;
         self.bind(info.offset)
-    }
-
-    #[cfg(not(unix))]
-    fn import(&mut self, _: i32, _: &MemoryInfo) -> Result<()> {
-        Err(Error::unsupported("file descriptors are there on Unix only"))
     }
 
     /// The host's own pixels. The type's index.

@@ -5,12 +5,8 @@
 
 use super::adapter::{Adapter, device_descriptor};
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
-#[cfg(not(target_vendor = "apple"))]
-use super::turns::HostTurn;
-use super::turns::QueueTurns;
-#[cfg(not(target_vendor = "apple"))]
+use super::turns::{HostTurn, QueueTurns};
 use super::vulkan::parts::{self, VulkanParts};
-#[cfg(not(target_vendor = "apple"))]
 use super::vulkan_host;
 use super::{driver_lock, process_end};
 use crate::deferred::hold;
@@ -72,18 +68,15 @@ pub struct Device {
     pub(in crate::gpu) turns: QueueTurns,
     /// Whether the device is a host's own.
     is_hosts: bool,
-    #[cfg(not(target_vendor = "apple"))]
     pub(in crate::gpu) vulkan: Option<Arc<VulkanParts>>,
 }
 
 /// Opens the adapter's device, or takes the host's. Errors: a text.
-#[cfg_attr(target_vendor = "apple", expect(unused_variables, reason = "hosts' devices are Vulkan's"))]
 fn opened(
     adapter: &Adapter,
     raw: &wgpu::Adapter,
     descriptor: &wgpu::DeviceDescriptor<'_>,
 ) -> Result<(wgpu::Device, wgpu::Queue), String> {
-    #[cfg(not(target_vendor = "apple"))]
     if let Some(host) = adapter.host() {
         let _turn = host.lock.as_deref().map(HostTurn::new);
         return vulkan_host::open(raw, host, descriptor);
@@ -154,10 +147,8 @@ impl Device {
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
-        #[cfg(not(target_vendor = "apple"))]
         let vulkan = VulkanParts::of(&raw).map(Arc::new);
         Ok(Self {
-            #[cfg(not(target_vendor = "apple"))]
             vulkan,
             turns: QueueTurns::new(adapter.host().and_then(|host| host.lock.clone())),
             is_hosts: adapter.host().is_some(),

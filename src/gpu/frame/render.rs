@@ -151,13 +151,7 @@ impl GpuTracer {
         let delivery = Delivery::of(target);
         let mut setup = self.planner().set_up(scene, request, kind)?;
         let beside = of_outputs.as_ref().map(|scene| {
-            BesideSetup::new(
-                &self.planner(),
-                &self.device,
-                scene,
-                request,
-                (outputs, Some(&setup).filter(|_| pictured)),
-            )
+            BesideSetup::new(&self.planner(), &self.device, scene, request, (outputs, pictured.then_some(&setup)))
         });
         let beside = beside.transpose()?;
         let mut needed = if pictured { setup.kernels() } else { Vec::new() };

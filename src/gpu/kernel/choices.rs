@@ -202,7 +202,7 @@ impl Values {
         let mut values = Self([NOT_MADE; CHOICES]);
         variants.iter().for_each(|variant| variant.make(&mut values));
         for (index, row) in TABLE.iter().enumerate() {
-            let read = Some(values.0[index]).filter(|_| kernel & row.read_by != 0);
+            let read = (kernel & row.read_by != 0).then_some(values.0[index]);
             values.0[index] = match row.set_for(kernel).or(read) {
                 Some(value) if value == NOT_MADE || values.meet(row.only) => value,
                 Some(_) => 0,

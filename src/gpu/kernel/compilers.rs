@@ -9,6 +9,7 @@ use crate::deferred::hold;
 use crate::error::Result;
 use crate::gpu::device::process_end;
 use crate::gpu::device::wgpu_device::Device;
+use crate::platform::lower_priority;
 use crate::thread_scope;
 use crate::thread_state::begin_own_thread;
 use std::collections::VecDeque;
@@ -174,7 +175,7 @@ impl Compilers {
             begin_own_thread();
             process_end::own_thread();
             let _scope = scope();
-            lower_priority();
+            lower_priority(NICER);
             if catch_unwind(AssertUnwindSafe(work)).is_err() {
                 log::debug!("work ahead of a frame panicked; the frame will do it again");
             }
@@ -227,26 +228,13 @@ impl Drop for Compilers {
     }
 }
 
+/// Compiling threads have a third of the usual share, and no less, as a frame may come to wait for the pipeline that
+/// such a thread is making. Where threads have no priority of their own, their small number has to do.
+const NICER: i32 = 5;
+
 fn compile_in_background(shared: &Shared, cache: &PipelineCache, device: &Device) {
-    lower_priority();
+    lower_priority(NICER);
     while let Some(key) = shared.next() {
         compile(cache, |cache| cache.get_ahead(device, key));
-    }
-}
-
-/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered to
-/// a third of the usual share and no further, as a frame may come to wait for the pipeline that such a thread is
-/// making.
-fn lower_priority() {
-    #[cfg(target_os = "linux")]
-    {
-        const NICER: i32 = 5;
-        const NICEST: i32 = 19;
-        // SAFETY: plain system calls on this thread.
-        unsafe {
-            let thread = libc::syscall(libc::SYS_gettid) as libc::id_t;
-            let own = libc::getpriority(libc::PRIO_PROCESS, thread);
-            libc::setpriority(libc::PRIO_PROCESS, thread, (own + NICER).min(NICEST));
-        }
     }
 }

@@ -6,6 +6,7 @@
 use super::present::Presenter;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::adapter::Adapter;
+use crate::gpu::device::interfaces::of_layer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::window::{Handles, PresentMode, Window};
@@ -51,10 +52,7 @@ fn surface_of(adapter: &Adapter, window: &Window) -> Result<wgpu::Surface<'stati
         Handles::Raw(display, window) => {
             wgpu::SurfaceTargetUnsafe::RawHandle { raw_display_handle: Some(display), raw_window_handle: window }
         }
-        #[cfg(target_vendor = "apple")]
-        Handles::MetalLayer(layer) => wgpu::SurfaceTargetUnsafe::CoreAnimationLayer(layer.as_ptr()),
-        #[cfg(not(target_vendor = "apple"))]
-        Handles::MetalLayer(_) => return Err(refused(&"it is a layer of Metal's")),
+        Handles::MetalLayer(layer) => of_layer(layer).ok_or_else(|| refused(&"it is a layer of Metal's"))?,
     };
     let instance = adapter.instance().ok_or_else(|| refused(&"OpenGL is used for tracing only"))?;
     // SAFETY: the window was found there when it was opened; `Window` keeps bhr's own X11 connection, and the host its

@@ -2,10 +2,10 @@
 //! Reading image files: the kind of a file, told by its first bytes, and the image that every kind becomes.
 
 use super::loaded::Loaded;
-use super::replace::without_waiting;
 use super::support::{about, io_error, on_own_thread};
 use super::{pam, png, pnm};
 use crate::error::Result;
+use crate::platform::open_without_waiting;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -32,7 +32,7 @@ fn open(path: &Path) -> Result<BufReader<File>> {
     // still so.
     refuse_as_source(&fs::metadata(path).map_err(io_error)?)?;
     let mut options = OpenOptions::new();
-    without_waiting(options.read(true));
+    open_without_waiting(options.read(true));
     let file = options.open(path).map_err(io_error)?;
     refuse_as_source(&file.metadata().map_err(io_error)?)?;
     Ok(BufReader::new(file))

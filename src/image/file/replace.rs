@@ -4,6 +4,9 @@
 
 use super::support::io_error;
 use crate::error::Result;
+use crate::platform::{
+    close_file, is_same_file, keep_mode, may_follow_link, never_wider, open_without_waiting, sync_folder,
+};
 use std::borrow::Cow;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -25,7 +28,8 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
     let file = fill(file)?;
     finish(file, before.as_ref()).map_err(io_error)?;
     temporary.rename(&place).map_err(io_error)?;
-    sync_folder(&place);
+    // The name is on the disk when its folder is. The file is in its place by now: an error would say that it is not.
+    sync_folder(folder_of(&place));
     Ok(())
 }
 
@@ -57,7 +61,7 @@ fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
     let mut place = Cow::Borrowed(path);
     for _ in 0..MAX_LINKS {
         let Some(link) = fs::symlink_metadata(&place).ok().filter(Metadata::is_symlink) else { return Ok(place) };
-        if !may_follow(&link, &place).map_err(io_error)? {
+        if !may_follow_link(&link, folder_of(&place)).map_err(io_error)? {
             let link = place.display();
             return Err(io_error(format!("{link} is a symbolic link of another user in a folder that all may write")));
         }
@@ -65,24 +69,6 @@ fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
         place = Cow::Owned(folder_of(&place).join(target));
     }
     Err(io_error(format!("it is a chain of more than {MAX_LINKS} symbolic links")))
-}
-
-/// In folders such as /tmp anyone may leave a link in the way of a file that is about to be written. There only links
-/// of this user and of the folder's owner are followed, as Linux does it with fs.protected_symlinks.
-#[cfg(unix)]
-fn may_follow(link: &Metadata, place: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::MetadataExt;
-    let folder = fs::metadata(folder_of(place))?;
-    // The folder is sticky, and all may write in it.
-    let shared = folder.mode() & 0o1002 == 0o1002;
-    // SAFETY: it has no conditions.
-    let user = unsafe { libc::geteuid() };
-    Ok(!shared || link.uid() == user || link.uid() == folder.uid())
-}
-
-#[cfg(not(unix))]
-fn may_follow(_: &Metadata, _: &Path) -> io::Result<bool> {
-    Ok(true)
 }
 
 /// The file at `place`, which `path` leads to, if there is one. It is opened for writing, and nothing is written: so
@@ -97,34 +83,13 @@ fn older(path: &Path, place: &Path) -> Result<Option<Metadata>> {
     // The kind of the file is looked at before it is opened, which devices may take for a command.
     refuse_as_target(&before)?;
     let mut options = OpenOptions::new();
-    without_waiting(options.write(true));
+    open_without_waiting(options.write(true));
     let opened = options.open(path).and_then(|file| file.metadata()).map_err(io_error)?;
     refuse_as_target(&opened)?;
     match is_same_file(&before, &opened) {
         true => Ok(Some(opened)),
         false => Err(io_error("it became another file just now")),
     }
-}
-
-/// Opens without waiting: a FIFO that has come in the file's place just now does not hold the caller up.
-#[cfg(unix)]
-pub(super) fn without_waiting(options: &mut OpenOptions) {
-    use std::os::unix::fs::OpenOptionsExt;
-    options.custom_flags(libc::O_NONBLOCK);
-}
-
-#[cfg(not(unix))]
-pub(super) fn without_waiting(_: &mut OpenOptions) {}
-
-#[cfg(unix)]
-fn is_same_file(a: &Metadata, b: &Metadata) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    (a.dev(), a.ino()) == (b.dev(), b.ino())
-}
-
-#[cfg(not(unix))]
-fn is_same_file(_: &Metadata, _: &Metadata) -> bool {
-    true
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -167,45 +132,12 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(Temporary, 
     Err(io_error(format!("its folder holds {MAX_NAMES} left-over files .bhr-*.tmp")))
 }
 
-/// The new file is at no time accessible to more users than the old one.
-#[cfg(unix)]
-fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
-    use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
-    if let Some(before) = before {
-        // The file has another group until `keep_mode`.
-        options.mode(before.mode() & 0o707);
-    }
-}
-
-#[cfg(not(unix))]
-fn never_wider(_: &mut OpenOptions, _: Option<&Metadata>) {}
-
 /// Gives the file the mode of the one before it, brings it to the disk and closes it: quotas and network file systems
 /// tell some errors only then.
 fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
     keep_mode(&file, before)?;
     synced(file.sync_all())?;
-    close(file)
-}
-
-#[cfg(unix)]
-fn keep_mode(file: &File, before: Option<&Metadata>) -> io::Result<()> {
-    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-    let Some(before) = before else { return Ok(()) };
-    // The owner is set where this process may; else the file becomes its own, as any new file does, and its group's if
-    // need be: that group is not given the rights of the group before it.
-    let _ = fchown(file, Some(before.uid()), Some(before.gid())).or_else(|_| fchown(file, None, Some(before.gid())));
-    let now = file.metadata()?;
-    let mode = before.mode() & if now.gid() == before.gid() { 0o777 } else { 0o707 };
-    match now.mode() & 0o7777 == mode {
-        true => Ok(()),
-        false => file.set_permissions(fs::Permissions::from_mode(mode)),
-    }
-}
-
-#[cfg(not(unix))]
-fn keep_mode(_: &File, _: Option<&Metadata>) -> io::Result<()> {
-    Ok(())
+    close_file(file)
 }
 
 /// These errors come from file systems that cannot sync, and say nothing about the data.
@@ -215,33 +147,3 @@ fn synced(result: io::Result<()>) -> io::Result<()> {
         result => result,
     }
 }
-
-/// Closes the file as dropping it does, but returns the error, which a drop ignores.
-#[cfg(unix)]
-fn close(file: File) -> io::Result<()> {
-    use std::os::fd::IntoRawFd;
-    // SAFETY: a descriptor that nothing else owns any more. It is closed whatever this returns.
-    match unsafe { libc::close(file.into_raw_fd()) } {
-        0 => Ok(()),
-        _ => match io::Error::last_os_error() {
-            error if error.kind() == ErrorKind::Interrupted => Ok(()),
-            error => Err(error),
-        },
-    }
-}
-
-#[cfg(not(unix))]
-fn close(file: File) -> io::Result<()> {
-    drop(file);
-    Ok(())
-}
-
-/// The name is on the disk when its folder is. The file is in its place by now: an error would say that it is not, so
-/// that stays with the system, as does a folder that may not be read.
-#[cfg(unix)]
-fn sync_folder(place: &Path) {
-    let _ = File::open(folder_of(place)).and_then(|folder| folder.sync_all());
-}
-
-#[cfg(not(unix))]
-fn sync_folder(_: &Path) {}

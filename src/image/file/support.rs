@@ -4,6 +4,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::memory::{MAX_SIDE, PixelFormat};
+use crate::platform::block_file_size_signal;
 use crate::thread_state::begin_own_thread;
 use std::fmt::Display;
 
@@ -90,7 +91,7 @@ pub(super) fn on_own_thread<T: Send>(work: impl FnOnce() -> Result<T> + Send) ->
     std::thread::scope(|scope| {
         let body = || {
             begin_own_thread();
-            ignore_file_size_signal();
+            block_file_size_signal();
             probe(SMALL_BYTES)?;
             work()
         };
@@ -105,19 +106,3 @@ pub(super) fn on_own_thread<T: Send>(work: impl FnOnce() -> Result<T> + Send) ->
         }
     })
 }
-
-/// The signal of a file that grows past the limit goes to the thread that writes; blocked, the write fails with
-/// EFBIG, and the pending signal ends with the thread.
-#[cfg(unix)]
-fn ignore_file_size_signal() {
-    // SAFETY: a signal set of this function's own, and the mask of this thread.
-    unsafe {
-        let mut signals: libc::sigset_t = std::mem::zeroed();
-        libc::sigemptyset(&mut signals);
-        libc::sigaddset(&mut signals, libc::SIGXFSZ);
-        libc::pthread_sigmask(libc::SIG_BLOCK, &signals, std::ptr::null_mut());
-    }
-}
-
-#[cfg(not(unix))]
-fn ignore_file_size_signal() {}

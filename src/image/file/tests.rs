@@ -314,52 +314,55 @@ fn left_over_temporary_files_are_passed_over() {
     assert!(old.iter().all(|name| fs::read(folder.file(name)).unwrap() == b"left"));
 }
 
+/// Modes and links, which are made by calls of Unix.
 #[cfg(unix)]
-#[test]
-fn an_older_file_keeps_its_mode() {
-    use std::os::unix::fs::PermissionsExt;
-    let folder = Folder::new("mode");
-    let path = folder.file("a.png");
-    let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
-    fs::write(folder.file("plain"), "").unwrap();
-    let plain = fs::metadata(folder.file("plain")).unwrap().permissions().mode() & 0o7777;
-    save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &path).unwrap();
-    assert_eq!(mode(), plain, "a new file's mode");
-    for wanted in [0o600, 0o640, 0o666, 0o604, 0o777] {
-        fs::set_permissions(&path, fs::Permissions::from_mode(wanted)).unwrap();
+mod on_unix {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    #[test]
+    fn an_older_file_keeps_its_mode() {
+        let folder = Folder::new("mode");
+        let path = folder.file("a.png");
+        let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
+        fs::write(folder.file("plain"), "").unwrap();
+        let plain = fs::metadata(folder.file("plain")).unwrap().permissions().mode() & 0o7777;
         save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &path).unwrap();
-        assert_eq!(mode(), wanted);
+        assert_eq!(mode(), plain, "a new file's mode");
+        for wanted in [0o600, 0o640, 0o666, 0o604, 0o777] {
+            fs::set_permissions(&path, fs::Permissions::from_mode(wanted)).unwrap();
+            save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &path).unwrap();
+            assert_eq!(mode(), wanted);
+        }
     }
-}
 
-/// Links lead to another folder, by relative and absolute paths, through several links, and to places where nothing is
-/// yet.
-#[cfg(unix)]
-#[test]
-fn the_target_of_a_link_is_written() {
-    use std::os::unix::fs::symlink;
-    let folder = Folder::new("links");
-    fs::create_dir(folder.file("far")).unwrap();
-    fs::write(folder.file("far/there.png"), "old").unwrap();
-    for (link, target) in [
-        ("relative.png", PathBuf::from("far/there.png")),
-        ("absolute.png", folder.file("far/there.png")),
-        ("chain.png", "relative.png".into()),
-        ("dangling.png", "far/not yet.png".into()),
-    ] {
-        symlink(target, folder.file(link)).unwrap();
-        save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &folder.file(link)).unwrap();
-        assert!(fs::symlink_metadata(folder.file(link)).unwrap().is_symlink(), "{link} was replaced");
-        load(&folder.file(link)).unwrap();
+    /// Links lead to another folder, by relative and absolute paths, through several links, and to places where nothing
+    /// is yet.
+    #[test]
+    fn the_target_of_a_link_is_written() {
+        let folder = Folder::new("links");
+        fs::create_dir(folder.file("far")).unwrap();
+        fs::write(folder.file("far/there.png"), "old").unwrap();
+        for (link, target) in [
+            ("relative.png", PathBuf::from("far/there.png")),
+            ("absolute.png", folder.file("far/there.png")),
+            ("chain.png", "relative.png".into()),
+            ("dangling.png", "far/not yet.png".into()),
+        ] {
+            symlink(target, folder.file(link)).unwrap();
+            save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &folder.file(link)).unwrap();
+            assert!(fs::symlink_metadata(folder.file(link)).unwrap().is_symlink(), "{link} was replaced");
+            load(&folder.file(link)).unwrap();
+        }
+        assert_eq!(fs::read_dir(folder.file("far")).unwrap().count(), 2);
+        load(&folder.file("far/there.png")).unwrap();
+        load(&folder.file("far/not yet.png")).unwrap();
+
+        symlink("b.png", folder.file("a.png")).unwrap();
+        symlink("a.png", folder.file("b.png")).unwrap();
+        let error = save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &folder.file("a.png")).unwrap_err();
+        assert!(error.kind == ErrorKind::Io && error.message.contains("symbolic links"), "{error}");
     }
-    assert_eq!(fs::read_dir(folder.file("far")).unwrap().count(), 2);
-    load(&folder.file("far/there.png")).unwrap();
-    load(&folder.file("far/not yet.png")).unwrap();
-
-    symlink("b.png", folder.file("a.png")).unwrap();
-    symlink("a.png", folder.file("b.png")).unwrap();
-    let error = save_block(layout(PixelFormat::Rgba8Srgb, 0), &[0; 64], &folder.file("a.png")).unwrap_err();
-    assert!(error.kind == ErrorKind::Io && error.message.contains("symbolic links"), "{error}");
 }
 
 #[test]

@@ -3,7 +3,6 @@
 //! semaphores, and barriers. vulkan_host.rs and vulkan_memory.rs, beside this folder, have the rest of the unsafe code
 //! for them. Knows no frames.
 
-#[cfg(unix)]
 pub(in crate::gpu) mod descriptor;
 pub(in crate::gpu) mod parts;
 pub(in crate::gpu) mod barrier;

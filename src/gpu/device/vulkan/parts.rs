@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The handles and functions of a device's Vulkan, the extensions that bhr adds to wgpu's, and what the device shares.
 
-#[cfg(unix)]
 use super::descriptor::FileKind;
 use crate::gpu::device::external::{AdapterIds, HOST_POINTER, OPAQUE_FD, Sharing};
 use ash::{ext, khr, vk};
 use std::ffi::CStr;
-#[cfg(unix)]
 use std::sync::OnceLock;
 use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::CreateDeviceCallback;
@@ -42,7 +40,6 @@ pub struct VulkanParts {
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
     pub(in crate::gpu) llvmpipe: bool,
     /// The kinds of file that the driver passes memory and semaphores as, once that was asked.
-    #[cfg(unix)]
     own_files: [OnceLock<Option<FileKind>>; 2],
 }
 
@@ -88,13 +85,17 @@ impl VulkanParts {
             pointer_alignment: host.min_imported_host_pointer_alignment,
             largest_image: of_device.limits.max_image_dimension2_d,
             llvmpipe: driver.driver_id == vk::DriverId::MESA_LLVMPIPE,
-            #[cfg(unix)]
             own_files: [const { OnceLock::new() }; 2],
             instance,
             device: raw,
             physical,
             family,
         })
+    }
+
+    /// Whether vkQueueSubmit waits where it should not (`Device::wait_for_waits`).
+    pub fn blocks_in_submit(&self) -> bool {
+        self.llvmpipe
     }
 
     /// The handles that targets and semaphores can be passed by.
@@ -184,7 +185,6 @@ impl VulkanParts {
     }
 
     /// The kind of file that the driver passes memory as; `None` where it passes none.
-    #[cfg(unix)]
     pub(in crate::gpu) fn own_memory(&self) -> Option<FileKind> {
         *self.own_files[0].get_or_init(|| {
             let fns = self.memory_fd.as_ref()?;
@@ -203,7 +203,6 @@ impl VulkanParts {
     }
 
     /// The kind of file that the driver passes semaphores as; `None` where it passes none.
-    #[cfg(unix)]
     pub(in crate::gpu) fn own_semaphore(&self) -> Option<FileKind> {
         *self.own_files[1].get_or_init(|| {
             let fns = self.semaphore_fd.as_ref()?;

@@ -85,7 +85,6 @@ impl GpuSemaphore {
         Ok(made)
     }
 
-    #[cfg(unix)]
     fn import(&self, fd: i32) -> Result<()> {
         let copy = super::descriptor::CopiedDescriptor::new(fd)?;
         super::descriptor::check_kind(fd, self.parts.own_semaphore(), "semaphore")?;
@@ -102,11 +101,6 @@ impl GpuSemaphore {
         // The driver has taken it over.
         copy.taken();
         Ok(())
-    }
-
-    #[cfg(not(unix))]
-    fn import(&self, _: i32) -> Result<()> {
-        Err(Error::unsupported("file descriptors are there on Unix only"))
     }
 
     /// A new descriptor of it, the caller's. Errors: INVALID_STATE for one that was not made to be exported.
@@ -127,10 +121,6 @@ impl GpuSemaphore {
     /// The VkSemaphore.
     pub fn handle(&self) -> u64 {
         self.raw.as_raw()
-    }
-
-    pub(in crate::gpu) fn raw(&self) -> vk::Semaphore {
-        self.raw
     }
 
     fn values(&self) -> MutexGuard<'_, Values> {
@@ -177,7 +167,7 @@ impl GpuSemaphore {
     }
 
     /// Whether a signal may go to the queue: it is not one that a frame which was asked for later has overtaken.
-    pub(in crate::gpu) fn may_submit(&self, value: u64) -> bool {
+    fn may_submit(&self, value: u64) -> bool {
         value > self.values().submitted
     }
 
@@ -257,5 +247,46 @@ impl Drop for GpuSemaphore {
             // SAFETY: bhr made it, its device lives, and no submission uses it any more, by this file's promise.
             unsafe { self.parts.device.destroy_semaphore(self.raw, None) };
         }
+    }
+}
+
+/// Has the next submission wait for `waits` and signal `signals`, each with the value of a timeline.
+pub(in crate::gpu) fn stage<'a>(
+    queue: &wgpu::Queue,
+    waits: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
+    signals: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
+) {
+    if waits.len() + signals.len() == 0 {
+        return;
+    }
+    // SAFETY: semaphores are added, which live until the submission has run.
+    let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+    for (semaphore, value) in waits {
+        hal.add_wait_semaphore(semaphore.raw, value, vk::PipelineStageFlags::ALL_COMMANDS);
+    }
+    for (semaphore, value) in signals {
+        // A timeline that has gone further already must not go back.
+        if value.is_none_or(|value| semaphore.may_submit(value)) {
+            hal.add_signal_semaphore(semaphore.raw, value);
+        }
+    }
+}
+
+/// After a submission that was refused: what it did not take must not go with the next one.
+pub(in crate::gpu) fn unstage<'a>(
+    queue: &wgpu::Queue,
+    waits: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
+    signals: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
+) {
+    if waits.len() + signals.len() == 0 {
+        return;
+    }
+    // SAFETY: semaphores are removed.
+    let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+    for (semaphore, _) in waits {
+        hal.remove_wait_semaphore(semaphore.raw);
+    }
+    for (semaphore, _) in signals {
+        hal.remove_signal_semaphore(semaphore.raw);
     }
 }

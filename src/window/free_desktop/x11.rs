@@ -3,9 +3,10 @@
 //! the host's connection, whose Xlib handler would end the process, and the host may destroy its window, or close its
 //! connection, before the surface. From the host's connection only its server is read.
 
-use super::claim;
-use super::native::{Handles, NativeWindow};
 use crate::error::{Error, Result};
+use crate::platform::library_function;
+use crate::window::claim;
+use crate::window::native::{Handles, NativeWindow};
 use raw_window_handle as rwh;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::ffi::{CStr, CString, OsStr, c_char, c_int, c_void};
@@ -25,7 +26,7 @@ pub struct X11Window {
     id: NonZeroU32,
     /// The one name that every connection to it gives.
     server: String,
-    pub depth: u8,
+    depth: u8,
 }
 
 impl X11Window {
@@ -76,6 +77,11 @@ impl X11Window {
         geometry(&self.connection, self.id).map(|g| [g.width.into(), g.height.into()])
     }
 
+    /// Bits of a pixel that count.
+    pub fn depth(&self) -> u8 {
+        self.depth
+    }
+
     /// The window as bhr's own connection knows it.
     pub fn handles(&self) -> Handles {
         let connection = NonNull::new(self.connection.get_raw_xcb_connection());
@@ -106,18 +112,9 @@ fn geometry(connection: &XCBConnection, id: NonZeroU32) -> Option<GetGeometryRep
 /// `F` is the type of that function.
 unsafe fn function<F: Copy>(library: &CStr, name: &CStr) -> Result<F> {
     const { assert!(size_of::<F>() == size_of::<*mut c_void>()) };
-    // SAFETY: both are C strings. The host's own copy is found when it has loaded the library.
-    let found = unsafe {
-        let library = libc::dlopen(library.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
-        if library.is_null() { std::ptr::null_mut() } else { libc::dlsym(library, name.as_ptr()) }
-    };
-    if found.is_null() {
-        return Err(Error::unsupported(format!(
-            "{} of {} is not there",
-            name.to_string_lossy(),
-            library.to_string_lossy()
-        )));
-    }
+    let found = library_function(library, name).map_err(|_| {
+        Error::unsupported(format!("{} of {} is not there", name.to_string_lossy(), library.to_string_lossy()))
+    })?;
     // SAFETY: a function's address, of the size checked above, of this type by the contract.
     Ok(unsafe { std::mem::transmute_copy(&found) })
 }

@@ -4,8 +4,8 @@
 //! the same for VSYNC, some of them (Mesa's) without a limit: a compositor says nothing to a window that it does not
 //! show, and the host hangs. Sends nothing else, and never reads or dispatches what is the host's.
 
-use super::Pacer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::window::Pacer;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::ffi::c_void;
 use std::fmt::Display;
