@@ -294,8 +294,10 @@ int main(int argc, char **argv) {
     }
     bhr_context_destroy(context);
     check_log(backend, BHR_LOG_OFF, 0);
-    check_log(backend, BHR_LOG_ERROR, 0);
-    check_log(backend, BHR_LOG_INFO, 0);
+    if (check_runs_all()) { /* the levels between the least and the most */
+        check_log(backend, BHR_LOG_ERROR, 0);
+        check_log(backend, BHR_LOG_INFO, 0);
+    }
     check_log(backend, BHR_LOG_TRACE, backend == BHR_BACKEND_VULKAN); /* wgpu always has something to say */
     check_log_of_cancel(backend, BHR_LOG_WARN, 0);
     check_log_of_cancel(backend, BHR_LOG_INFO, 1);
