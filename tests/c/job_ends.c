@@ -397,7 +397,9 @@ int main(int argc, char **argv) {
         two_waiters(context);
     }
     progress_is_heard(context);
-    small_job_is_heard_of(context);
+    if (!brief) {
+        small_job_is_heard_of(context);
+    }
     progress_cancels(context);
     destroy_while_running(context, small);
     if (!brief) {
