@@ -138,7 +138,7 @@ def test_contexts_given_up_within_a_callback_end(ctx):
     assert threads_of_process() <= before
 
 
-def test_a_thousand_frames_take_no_more_memory(ctx):
+def test_many_frames_take_no_more_memory(ctx):
     def frames(count):
         out = np.zeros((9, 16, 4), np.uint8)
         for i in range(count):
@@ -154,9 +154,9 @@ def test_a_thousand_frames_take_no_more_memory(ctx):
         return resident()
 
     # Threads come and go, and glibc's heaps for them fill up in the beginning.
-    before = frames(2000 if all_tests() else 200)
-    after = frames(10_000 if all_tests() else 1000)
-    assert after - before < 6 * 2**20, f"{(after - before) / 2**20:.1f} MiB"
+    before = frames(2000 if all_tests() else 150)
+    after = frames(10_000 if all_tests() else 400)
+    assert after - before < (6 if all_tests() else 3) * 2**20, f"{(after - before) / 2**20:.1f} MiB"
 
 
 def test_loaded_frames_give_their_memory_back(tmp_path):
@@ -212,8 +212,8 @@ def test_the_interpreter_ends_with_jobs_running(python, backend):
 import logging, threading, time, bhr
 logging.basicConfig(level=logging.DEBUG, filename="/dev/null")
 ctx = bhr.Context(bhr.Backend.{backend})
-ctx.quality = bhr.Quality(samples_per_pixel=4)
-jobs = [ctx.render_async(640, 360, progress=lambda fraction: None) for _ in range(40)]
+ctx.quality = bhr.Quality(samples_per_pixel=16)
+jobs = [ctx.render_async(320, 180, progress=lambda fraction: None) for _ in range(40)]
 jobs[-1].add_done_callback(lambda job: print(job.cancelled()))
 other = bhr.Context(bhr.Backend.{backend})
 def use():

@@ -151,14 +151,14 @@ static int cancel_halfway(BhrContext *context, uint32_t size, unsigned char *who
 /* A tracer may finish small frames in one piece, so the size grows until there is a middle. After that the context
  * renders as before. */
 static void cancel_in_the_middle(BhrContext *context) {
-    enum { LARGEST = 4096 };
+    enum { LARGEST = 6144 };
     const size_t   bytes = (size_t)LARGEST * (LARGEST * 4 + 12);
     unsigned char *whole = malloc(bytes), *part = malloc(bytes);
     uint32_t       size = 256;
     Watch          watch;
     watch_begin(&watch, context);
     while (size <= LARGEST && !cancel_halfway(context, size, whole, part)) {
-        size *= check_runs_all() ? 2 : 4;
+        size = check_runs_all() || size >= 3072 ? 2 * size : 3072; /* lavapipe finishes 2048 x 2048 in one piece */
     }
     check_unchanged(&watch, __FILE__, __LINE__, "a frame after a cancelled one");
     CHECK(size <= LARGEST, "no frame up to %d x %d can be cancelled halfway", LARGEST, LARGEST);
@@ -294,8 +294,10 @@ int main(int argc, char **argv) {
     }
     bhr_context_destroy(context);
     check_log(backend, BHR_LOG_OFF, 0);
-    check_log(backend, BHR_LOG_ERROR, 0);
-    check_log(backend, BHR_LOG_INFO, 0);
+    if (check_runs_all()) { /* the levels between the least and the most */
+        check_log(backend, BHR_LOG_ERROR, 0);
+        check_log(backend, BHR_LOG_INFO, 0);
+    }
     check_log(backend, BHR_LOG_TRACE, backend == BHR_BACKEND_VULKAN); /* wgpu always has something to say */
     check_log_of_cancel(backend, BHR_LOG_WARN, 0);
     check_log_of_cancel(backend, BHR_LOG_INFO, 1);

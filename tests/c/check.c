@@ -49,7 +49,7 @@ int check_runs_all(void) {
 
 void check_set_sky(BhrContext *context) {
     BhrSky sky;
-    if (getenv("CHECK_WITHOUT_MILKY_WAY") != NULL && CHECK_OK(bhr_sky_init(&sky, sizeof sky))) {
+    if ((!check_runs_all() || getenv("CHECK_WITHOUT_MILKY_WAY") != NULL) && CHECK_OK(bhr_sky_init(&sky, sizeof sky))) {
         sky.flags &= ~(uint32_t)BHR_SKY_MILKY_WAY;
         CHECK_OK(bhr_set_sky(context, &sky));
     }

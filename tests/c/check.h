@@ -26,8 +26,8 @@ int check_runs_all(void); /* whether this is tests/run all: BHR_TESTS_ALL=1 in t
 BhrContextOptions check_options(BhrBackend backend); /* the defaults, with this backend */
 BhrContext       *check_context_with(const BhrContextOptions *options); /* as check_context */
 
-/* The sky of check_context. With CHECK_WITHOUT_MILKY_WAY in the environment it has no Milky Way, which takes
- * valgrind long to make in every program anew. */
+/* The sky of check_context. It has no Milky Way, which takes long to make in every program anew, but in `tests/run all`
+ * without CHECK_WITHOUT_MILKY_WAY in the environment, which is for valgrind. */
 void check_set_sky(BhrContext *context);
 
 /* ---- checks: the condition, then a printf message that says what was seen. Any thread may check. ---- */

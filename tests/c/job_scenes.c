@@ -30,7 +30,11 @@ void set_quality(BhrContext *context, BhrMethod method, uint32_t samples) {
 }
 
 BhrJob *submit_slow(BhrContext *context) {
-    const BhrImage target = image_of(BHR_FORMAT_RGBA8_SRGB, SLOW_WIDTH, SLOW_HEIGHT, slow_pixels, SLOW_BYTES);
+    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    CHECK_OK(bhr_context_adapter(context, &adapter));
+    const uint32_t part = adapter.flags & BHR_ADAPTER_SOFTWARE ? 3 : 1;
+    const BhrImage target =
+        image_of(BHR_FORMAT_RGBA8_SRGB, SLOW_WIDTH / part, SLOW_HEIGHT / part, slow_pixels, SLOW_BYTES);
     CHECK_OK(bhr_set_region(context, NULL));
     CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
     set_quality(context, BHR_METHOD_RK4, slow_samples);

@@ -13,7 +13,7 @@
 #define FLIGHT 8 /* jobs under way at once */
 #define FOR_EVER UINT64_MAX
 
-/* The slow job: many samples, every ray integrated. */
+/* The slow job: many samples, every ray integrated. Software, which takes long for each sample, has a smaller one. */
 #define SLOW_WIDTH 640u
 #define SLOW_HEIGHT 480u
 #define SLOW_BYTES (SLOW_WIDTH * SLOW_HEIGHT * 4u)

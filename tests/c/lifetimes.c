@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WARM_UP 15
+#define WARM_UP 10
 #define MAX_GROWTH_ON_CPU (16 << 10)       /* bytes a cycle; measured: less than 1 KiB */
 #define MAX_GROWTH_OF_DRIVER (32 << 10)    /* bytes a cycle; lavapipe (Mesa 22.3): nothing measured */
 

@@ -87,6 +87,9 @@ int main(int argc, char **argv) {
     const BhrBackend         backend = check_begin(argc, argv);
     int                      renders = 1;
     for (size_t i = 0; i <= 8; i++) {
+        if (!check_runs_all() && i < 8 && (i == 1 || i == 2 || i == 4 || i == 7)) {
+            continue; /* every pair of the three variables' values is among the others */
+        }
         const Case one = {displays[i & 1], waylands[i >> 1 & 1], folders[i >> 2]};
         char       said[2048];
         const int  status = child(backend, &one, renders, said, sizeof said);

@@ -38,11 +38,14 @@ void watch_unusual_scene(Watch *watch, BhrContext *context) {
 
 void finite_frame(BhrContext *context, const char *what, size_t index) {
     static float   light[WATCH_WIDTH * WATCH_HEIGHT * 4];
-    const BhrImage image = image_of(BHR_FORMAT_RGBA32F, WATCH_WIDTH, WATCH_HEIGHT, light, sizeof light);
+    const uint32_t part = check_runs_all() ? 1 : 2; /* everyday a quarter of the rays through the same view */
+    const size_t   count = WATCH_WIDTH / part * (WATCH_HEIGHT / part) * 4;
+    const BhrImage image =
+        image_of(BHR_FORMAT_RGBA32F, WATCH_WIDTH / part, WATCH_HEIGHT / part, light, sizeof light);
     CHECK_OK(bhr_render_image(context, &image));
     size_t finite = 0;
-    for (size_t i = 0; i < COUNT_OF(light); i++) {
+    for (size_t i = 0; i < count; i++) {
         finite += isfinite(light[i]) && light[i] >= 0.0f;
     }
-    CHECK(finite == COUNT_OF(light), "%s %u: %u numbers are finite", what, (unsigned)index, (unsigned)finite);
+    CHECK(finite == count, "%s %u: %u numbers are finite", what, (unsigned)index, (unsigned)finite);
 }

@@ -376,9 +376,11 @@ int main(int argc, char **argv) {
     setting = plain;
     use(&reference);
     CHECK(memcmp(reference.frame, reference.job_frame, BYTES) == 0, "a job makes another frame");
-    hosts_with("a host that traps", trapping);
     hosts_with("a host that rounds upward", upward);
-    hosts_with("a host that flushes subnormal numbers", flushing);
+    if (check_runs_all()) { /* everyday the last one traps and flushes, too */
+        hosts_with("a host that traps", trapping);
+        hosts_with("a host that flushes subnormal numbers", flushing);
+    }
     hosts_with("a host that does it all", all_at_once);
     thread_with_little_stack();
     fiber_with_little_stack();

@@ -128,11 +128,11 @@ int main(int argc, char **argv) {
     const BhrWindowKind kind = host_kind(argc > 2 ? argv[2] : NULL);
     const int           frames = argc > 3 ? atoi(argv[3]) : 5000, jobs = argc > 4 ? atoi(argv[4]) : 1000;
     BhrContext         *context = check_context(backend);
-    const int           few = frames < 5000, warm_up = few ? frames / 4 : 500, surfaces = few ? 30 : 100;
+    const int           few = frames < 5000, warm_up = few ? frames / 4 : 500, surfaces = few ? 14 : 100;
     Host                host = host_open(kind, NULL, WIDTH, HEIGHT);
     BhrSurface         *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_IMMEDIATE);
     if (few) {
-        max_growth = 4L << 20; /* the bound of thousands of frames would be met by no leak of some hundred */
+        max_growth = 2L << 20; /* the bound of thousands of frames would be met by no leak of some hundred */
     }
     present(context, surface, 0, warm_up);
     Holding before = look();
