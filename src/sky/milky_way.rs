@@ -189,7 +189,7 @@ fn brightest() -> f64 {
     MILKY_WAY_GAIN * STAR_REFERENCE_RADIANCE * flux
 }
 
-/// What the picture does not have, for texels one after another along a row.
+/// Dust and star clouds, which the picture does not have, for texels one after another along a row.
 struct RowNoise {
     dust: Octaves<DUST_OCTAVES>,
     clouds: Octaves<CLOUD_OCTAVES>,

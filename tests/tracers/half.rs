@@ -160,9 +160,9 @@ fn views_are_within_the_bound() {
 }
 
 /// Blocks are counted from the frame's corner: parts of it, and frames after other frames, have the same bytes. So have
-/// frames without matter, whatever its resolution. Everyday one scene with samples, one with things before the matter and
-/// one of another projection, because blocks know nothing of shapes; and one of them again, because each part is a frame
-/// after others.
+/// frames without matter, whatever its resolution. Everyday one scene with samples, one with things before the matter
+/// and one of another projection, because blocks know nothing of shapes; and one of them again, because each part is a
+/// frame after others.
 #[test]
 fn parts_have_the_bytes_of_the_whole() {
     let size = if runs_all() { [101, 67] } else { [51, 35] };
