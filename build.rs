@@ -16,7 +16,28 @@ fn main() -> io::Result<()> {
             println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libbhr.so");
         }
     }
+    take_late_functions();
     list_shaders()
+}
+
+/// The functions of src/platform/windows/late.rs take the places of imports. Microsoft's linker has no such option.
+fn take_late_functions() {
+    let is = |key: &str, values: &[&str]| std::env::var(key).is_ok_and(|value| values.contains(&value.as_str()));
+    if is("CARGO_CFG_TARGET_OS", &["windows"])
+        && is("CARGO_CFG_TARGET_ENV", &["gnu"])
+        && is("CARGO_CFG_TARGET_ARCH", &["x86_64", "aarch64"])
+    {
+        for name in [
+            "CreateDXGIFactory1",
+            "wglCreateContext",
+            "wglDeleteContext",
+            "wglGetCurrentContext",
+            "wglGetProcAddress",
+            "wglMakeCurrent",
+        ] {
+            println!("cargo:rustc-cdylib-link-arg=-Wl,--wrap={name}");
+        }
+    }
 }
 
 /// Writes shaders.rs: name and text of every file of shaders/, in order. The compiler completes the paths, because

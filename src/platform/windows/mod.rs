@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Windows.
 
-/// Those that this file does not have.
+#[cfg(all(target_env = "gnu", any(target_arch = "x86_64", target_arch = "aarch64")))]
+mod late;
+
+/// The functions that this file does not have.
 pub use super::bare::*;
 
 use std::ffi::c_void;
