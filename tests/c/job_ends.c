@@ -389,7 +389,7 @@ int main(int argc, char **argv) {
     const int        small = brief || (argc > 2 && strcmp(argv[2], "small") == 0);
     BhrContext      *context = check_context(backend);
     if (small) {
-        slow_samples = brief ? 4 : 16;
+        slow_samples = brief ? 1 : 16;
     }
     render_expected(context, brief ? 2 : FLIGHT);
     if (!brief) {

@@ -13,13 +13,15 @@
 #define FLIGHT 8 /* jobs under way at once */
 #define FOR_EVER UINT64_MAX
 
-/* The slow job: many samples, every ray integrated. Software, which takes long for each sample, has a smaller one. */
+/* The slow job: many samples, every ray integrated. Software, which takes long for each sample, has a smaller one, but
+ * with few samples, as it would be over soon. */
+#define ALL_SAMPLES 256u
 #define SLOW_WIDTH 640u
 #define SLOW_HEIGHT 480u
 #define SLOW_BYTES (SLOW_WIDTH * SLOW_HEIGHT * 4u)
 
 extern unsigned char slow_pixels[SLOW_BYTES];
-extern uint32_t      slow_samples; /* 256; fewer are slow enough under valgrind */
+extern uint32_t      slow_samples; /* ALL_SAMPLES; fewer are slow enough under valgrind */
 /* The frames of the scenes, and the targets of jobs that must show the same. */
 extern unsigned char expected[FLIGHT][BYTES], got[FLIGHT][BYTES];
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* growth.c -- many frames of a moving camera, into a window and into memory by jobs, and many windows: after a warm-up
- * the process holds no more memory (to max_growth), descriptors or threads than before. A device's driver
- * counts, too: software drivers once leaked with every submission (shaders/shared/not_inlined.wgsl).
+ * the process holds no more memory (to max_growth, resident and of the heap), descriptors or threads than before. A
+ * device's driver counts, too: software drivers once leaked with every submission (shaders/shared/not_inlined.wgsl).
  *
  *     growth BACKEND xlib|xcb [FRAMES [JOBS]] */
 #define _POSIX_C_SOURCE 200809L
@@ -9,6 +9,7 @@
 #include "host.h"
 
 #include <dirent.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,7 @@ static long max_growth = 20L << 20;
 
 typedef struct Holding {
     long bytes; /* of memory of its own, resident */
+    long taken; /* from the heap, resident already or not, and not given back; 0 where the C library does not say */
     int  descriptors, threads;
 } Holding;
 
@@ -42,7 +44,7 @@ static int entries(const char *path) {
 }
 
 static Holding look(void) {
-    Holding holding = {0, entries("/proc/self/fd"), entries("/proc/self/task")};
+    Holding holding = {0, 0, entries("/proc/self/fd"), entries("/proc/self/task")};
     long    total = 0, resident = 0, of_files = 0;
     FILE   *file = fopen("/proc/self/statm", "r");
     if (file != NULL) {
@@ -52,6 +54,10 @@ static Holding look(void) {
         }
         fclose(file);
     }
+#ifdef __GLIBC__
+    const struct mallinfo2 heap = mallinfo2();
+    holding.taken = (long)(heap.uordblks + heap.hblkhd);
+#endif
     CHECK(holding.bytes > 0 && holding.descriptors > 0 && holding.threads > 0, "no /proc to look at");
     return holding;
 }
@@ -63,6 +69,9 @@ static void check_growth(Holding before, const char *what, int frames) {
            after.descriptors - before.descriptors, after.threads - before.threads, frames);
     CHECK(after.bytes - before.bytes < max_growth, "%s: grew by %ld KiB; less than %ld are granted", what,
           (after.bytes - before.bytes) / 1024, max_growth / 1024);
+    CHECK(after.taken - before.taken < max_growth, "%s: took %ld KiB more of the heap; less than %ld are granted", what,
+          (after.taken - before.taken) / 1024, max_growth / 1024);
+    printf("%s: %+ld KiB of the heap\n", what, (after.taken - before.taken) / 1024);
     CHECK(after.descriptors <= before.descriptors, "%s: %d descriptors became %d", what, before.descriptors,
           after.descriptors);
     CHECK(after.threads <= before.threads, "%s: %d threads became %d", what, before.threads, after.threads);
