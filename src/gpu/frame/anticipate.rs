@@ -78,8 +78,12 @@ const MOST_KINDS: usize = 64;
 const FIRST_SIZE: [u32; 2] = [1920, 1080];
 
 impl GpuTracer {
-    /// Begins to make the kernels of the default scene, while the host still sets up its own.
+    /// Begins to make the kernels of the default scene, while the host still sets up its own. Not on a software driver:
+    /// its frames want the same cores, and most hosts set another scene.
     pub(in crate::gpu) fn expect_first_frame(&mut self) {
+        if self.adapter.info.software {
+            return;
+        }
         let scene = Scene::default();
         let [width, height] = FIRST_SIZE;
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
