@@ -219,16 +219,16 @@ typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
 #define BHR_ADAPTER_DISCRETE 1u /**< BhrAdapterInfo.flags: a GPU with memory of its own. */
 #define BHR_ADAPTER_SOFTWARE 2u /**< BhrAdapterInfo.flags: a software driver, or the CPU tracer. */
 
-/** The interface to an adapter. AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that
- * only OpenGL reaches; else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. It
- * never takes software OpenGL. */
+/** The interface to an adapter. AUTO takes the best GPU that Vulkan, Metal or, with DXC, Direct3D 12 reaches; else one
+ * that only OpenGL reaches, or Direct3D 12 with FXC; else a software driver for Vulkan (Mesa's lavapipe) or Direct3D
+ * 12; else the CPU tracer. It never takes software OpenGL. */
 typedef int32_t BhrBackend;
 
 #define BHR_BACKEND_AUTO 0   /**< The best one there is, in the order above. */
 #define BHR_BACKEND_CPU 1    /**< The built-in double-precision CPU tracer: needs no driver. */
 #define BHR_BACKEND_VULKAN 2 /**< Vulkan. */
 #define BHR_BACKEND_METAL 3  /**< Metal. */
-#define BHR_BACKEND_D3D12 4  /**< Direct3D 12. */
+#define BHR_BACKEND_D3D12 4  /**< Direct3D 12, never tried on Windows itself; its compiler: docs/platforms.md. */
 
 #define BHR_BACKEND_GL 5 /**< OpenGL or OpenGL ES, by EGL or WGL. A host that ends EGL's display: docs/adapters.md. */
 
@@ -241,7 +241,8 @@ typedef struct BhrAdapterInfo {
     uint32_t device_id;   /**< PCI id of the device; 0 for the CPU tracer. */
     uint32_t reserved;    /**< Reserved: 0. */
     char name[256];       /**< UTF-8, cut where it is longer. */
-    char driver[256];     /**< Name and version of the driver, UTF-8; "" where it is not known. */
+    /** Name and version of the driver, UTF-8; "" where it is not known. D3D12: and who compiles kernels, DXC or FXC. */
+    char driver[256];
 } BhrAdapterInfo;
 
 /** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */

@@ -16,9 +16,9 @@ pub const BHR_ADAPTER_DISCRETE: u32 = 1u32;
 /// BhrAdapterInfo.flags: a software driver, or the CPU tracer.
 pub const BHR_ADAPTER_SOFTWARE: u32 = 2u32;
 
-/// The interface to an adapter. AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that
-/// only OpenGL reaches; else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. It
-/// never takes software OpenGL.
+/// The interface to an adapter. AUTO takes the best GPU that Vulkan, Metal or, with DXC, Direct3D 12 reaches; else one
+/// that only OpenGL reaches, or Direct3D 12 with FXC; else a software driver for Vulkan (Mesa's lavapipe) or Direct3D
+/// 12; else the CPU tracer. It never takes software OpenGL.
 pub type BhrBackend = i32;
 /// The best one there is, in the order above.
 pub const BHR_BACKEND_AUTO: BhrBackend = 0;
@@ -28,7 +28,7 @@ pub const BHR_BACKEND_CPU: BhrBackend = 1;
 pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
 /// Metal.
 pub const BHR_BACKEND_METAL: BhrBackend = 3;
-/// Direct3D 12.
+/// Direct3D 12, never tried on Windows itself; its compiler: docs/platforms.md.
 pub const BHR_BACKEND_D3D12: BhrBackend = 4;
 /// OpenGL or OpenGL ES, by EGL or WGL. A host that ends EGL's display: docs/adapters.md.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
@@ -53,7 +53,7 @@ pub struct BhrAdapterInfo {
     pub reserved: u32,
     /// UTF-8, cut where it is longer.
     pub name: [c_char; 256],
-    /// Name and version of the driver, UTF-8; "" where it is not known.
+    /// Name and version of the driver, UTF-8; "" where it is not known. D3D12: and who compiles kernels, DXC or FXC.
     pub driver: [c_char; 256],
 }
 

@@ -23,6 +23,12 @@ pub fn library_function(_library: &CStr, _function: &CStr) -> Result<NonNull<std
     Err(NotFound::Library)
 }
 
+/// Where a host lays libraries that this one is to find: the folder of this library, and that of the host's program.
+/// None where the system's loader looks for libraries in places of its own.
+pub fn folders_of_libraries() -> Vec<PathBuf> {
+    Vec::new()
+}
+
 /// The part that [`library_function`] does not find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotFound {

@@ -38,6 +38,6 @@ pub struct AdapterInfo {
     pub vendor_id: u32,
     pub device_id: u32,
     pub name: String,
-    /// Name and version of the driver; empty where it is not known.
+    /// Name and version of the driver, and who compiles for Direct3D 12; empty where it is not known.
     pub driver: String,
 }

@@ -3,6 +3,7 @@
 
 use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
+use super::hlsl_compiler::HlslCompiler;
 use super::instance::{self, DriverAdapters};
 use super::{driver_lock, loader, process_end};
 use crate::attempt;
@@ -20,8 +21,8 @@ pub enum Search {
     All,
     /// Every interface but GL: those that can present.
     Native,
-    /// Hardware of every interface, then the software adapters of all but GL. GL is looked at only where no other
-    /// interface has hardware: starting it takes as long as all the rest.
+    /// Hardware of every interface, then the software adapters of all but GL. GL is looked at only where no interface
+    /// that goes before it has hardware: starting it takes as long as all the rest.
     Auto,
     /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
     Only(Backend),
@@ -48,7 +49,7 @@ impl Adapter {
         instance: wgpu::Instance,
         host: Option<HostDevice>,
     ) -> Result<Self> {
-        match checked(raw, Some(instance), None) {
+        match checked(raw, Some(instance), None, &HlslCompiler::Fxc) {
             Ok(found) => Ok(Self { host, ..found.adapter }),
             Err(reason) => Err(Error::unsupported(format!("the device cannot be used: {reason}"))),
         }
@@ -121,7 +122,9 @@ impl Drop for Handle {
 }
 
 /// Every adapter of `search` that has what the tracer needs, best first: discrete GPUs, integrated ones, virtual and
-/// unknown ones, software. Among equals GL is last; the driver's order decides the rest, so one machine has one order.
+/// unknown ones, software. Among equals Direct3D 12 comes after Vulkan, and GL is last. Direct3D 12 whose kernels FXC
+/// compiles is behind all others, its GPUs behind GPUs and its software behind software: FXC was never seen to compile
+/// one. The driver's order decides the rest, so one machine has one order.
 /// Hardware that several interfaces reach is listed once for each.
 ///
 /// `validation`: adapters whose devices the driver's validation layers watch, if they are installed. GL has none: what
@@ -130,14 +133,14 @@ impl Drop for Handle {
 /// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
 pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
     let native = || {
-        let (instance, list) = native(validation);
-        list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None)).collect::<Vec<_>>()
+        let DriverAdapters { instance, list, hlsl } = native(validation);
+        list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None, &hlsl)).collect::<Vec<_>>()
     };
     let mut list = match search {
         Search::All => [native(), gl().unwrap_or_default()].into_iter().flatten().collect(),
         Search::Native => native(),
         Search::Auto => match native() {
-            list if list.iter().any(|found| !found.adapter.info.software) => list,
+            list if list.iter().any(|found| is_enough(&found.rank)) => list,
             list => [list, gl_hardware()].into_iter().flatten().collect(),
         },
         Search::Only(Backend::Cpu) => Vec::new(),
@@ -228,7 +231,7 @@ const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 /// way round.
 static FOUND: Mutex<[Found; 2]> = Mutex::new(NONE_FOUND);
 
-const NONE_FOUND: [Found; 2] = [const { Found { wayland: false, adapters: (None, Vec::new()) } }; 2];
+const NONE_FOUND: [Found; 2] = [const { Found { wayland: false, adapters: DriverAdapters::NONE } }; 2];
 
 /// The result of a search.
 struct Found {
@@ -246,7 +249,7 @@ fn native(validation: bool) -> DriverAdapters {
     let wayland = instance::may_try_wayland();
     let kept = || {
         let kept = &found()[usize::from(validation)];
-        (!kept.adapters.1.is_empty() && (kept.wayland || !wayland)).then(|| kept.adapters.clone())
+        (!kept.adapters.list.is_empty() && (kept.wayland || !wayland)).then(|| kept.adapters.clone())
     };
     kept().unwrap_or_else(|| {
         // A second thread waits for what the first one finds.
@@ -278,13 +281,13 @@ fn gl() -> Option<Vec<RankedAdapter>> {
         thread.run(|| {
             // Adapters that are not wanted are dropped here.
             let _driver = driver_lock::lock();
-            let (instance, list) = ask_drivers(wgpu::Backends::GL, false, false);
+            let DriverAdapters { instance, list, hlsl } = ask_drivers(wgpu::Backends::GL, false, false);
             keep_display(instance);
             // All adapters of an instance share its context.
             if let Some(first) = list.first() {
                 thread.guard_context(first);
             }
-            list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)))).collect()
+            list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)), &hlsl)).collect()
         })
     };
     search().inspect_err(|error| log::info!("adapters of GL passed over: {error}")).ok()
@@ -325,10 +328,13 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> Dri
     process_end::watch();
     let found = found.unwrap_or_else(|_| {
         log::warn!("the search for adapters of {backends:?} panicked");
-        (None, Vec::new())
+        DriverAdapters::NONE
     });
-    if found.1.is_empty() {
+    if found.list.is_empty() {
         log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
+    }
+    if found.has_d3d12() {
+        log::info!("Direct3D 12: kernels are compiled by {:?}", found.hlsl);
     }
     found
 }
@@ -339,17 +345,32 @@ struct RankedAdapter {
     adapter: Adapter,
 }
 
-/// Class of the hardware, then whether it is GL.
-type Rank = (u8, bool);
+/// Lower is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Rank {
+    software: bool,
+    /// FXC compiles its kernels.
+    by_fxc: bool,
+    /// The kind of hardware.
+    class: u8,
+    interface: u8,
+}
 
 /// `None`, with the reason in the log, when it cannot run the tracer.
 fn usable(
     raw: wgpu::Adapter,
     instance: Option<wgpu::Instance>,
     gl: Option<(Arc<GlThread>, DisplayAge)>,
+    hlsl: &HlslCompiler,
 ) -> Option<RankedAdapter> {
     let found = raw.get_info();
-    checked(raw, instance, gl)
+    checked(raw, instance, gl, hlsl)
+        .map(|mut usable| {
+            if usable.adapter.info.backend == Backend::D3d12 {
+                usable.adapter.info.driver += &format!("; kernels compiled by {hlsl}");
+            }
+            usable
+        })
         .inspect_err(|reason| log::info!("adapter {} ({}) passed over: {reason}", found.name, found.backend))
         .ok()
 }
@@ -359,6 +380,7 @@ fn checked(
     raw: wgpu::Adapter,
     instance: Option<wgpu::Instance>,
     gl: Option<(Arc<GlThread>, DisplayAge)>,
+    hlsl: &HlslCompiler,
 ) -> Result<RankedAdapter, String> {
     let found = raw.get_info();
     let Some(backend) = backend(found.backend) else {
@@ -387,7 +409,7 @@ fn checked(
         name: found.name,
     };
     let handle = Handle { raw: Some(raw), instance, gl };
-    Ok(RankedAdapter { rank: rank(kind, backend), adapter: Adapter { info, handle, host: None } })
+    Ok(RankedAdapter { rank: rank(kind, backend, hlsl), adapter: Adapter { info, handle, host: None } })
 }
 
 /// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)
@@ -398,14 +420,25 @@ fn is_software(renderer: &str) -> bool {
         .any(|known| name.contains(known))
 }
 
-fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {
+fn rank(kind: wgpu::DeviceType, backend: Backend, hlsl: &HlslCompiler) -> Rank {
     let class = match kind {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
         wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
         wgpu::DeviceType::Cpu => 3,
     };
-    (class, backend == Backend::Gl)
+    let interface = match backend {
+        Backend::D3d12 => 1,
+        Backend::Gl => 2,
+        _ => 0,
+    };
+    let by_fxc = backend == Backend::D3d12 && *hlsl == HlslCompiler::Fxc;
+    Rank { software: kind == wgpu::DeviceType::Cpu, by_fxc, class, interface }
+}
+
+/// Whether AUTO looks no further, as GL's adapters are none better.
+fn is_enough(rank: &Rank) -> bool {
+    !rank.software && !rank.by_fxc
 }
 
 fn backend(of: wgpu::Backend) -> Option<Backend> {
@@ -424,19 +457,39 @@ mod tests {
     use wgpu::DeviceType;
 
     #[test]
-    fn ranks_hardware_before_software_and_gl_last_in_its_class() {
+    fn ranks_hardware_before_software_gl_last_in_its_class_and_fxc_behind_all() {
+        let dxc = HlslCompiler::Dxc("dxcompiler.dll".into());
         let order = [
-            (DeviceType::DiscreteGpu, Backend::Vulkan),
-            (DeviceType::DiscreteGpu, Backend::Gl),
-            (DeviceType::IntegratedGpu, Backend::D3d12),
-            (DeviceType::IntegratedGpu, Backend::Gl),
-            (DeviceType::VirtualGpu, Backend::Vulkan),
-            (DeviceType::Other, Backend::Gl),
-            (DeviceType::Cpu, Backend::Vulkan),
-            (DeviceType::Cpu, Backend::Gl),
+            (DeviceType::DiscreteGpu, Backend::Vulkan, &dxc),
+            (DeviceType::DiscreteGpu, Backend::D3d12, &dxc),
+            (DeviceType::DiscreteGpu, Backend::Gl, &dxc),
+            (DeviceType::IntegratedGpu, Backend::Metal, &HlslCompiler::Fxc),
+            (DeviceType::IntegratedGpu, Backend::D3d12, &dxc),
+            (DeviceType::IntegratedGpu, Backend::Gl, &HlslCompiler::Fxc),
+            (DeviceType::VirtualGpu, Backend::Vulkan, &HlslCompiler::Fxc),
+            (DeviceType::Other, Backend::Gl, &dxc),
+            (DeviceType::DiscreteGpu, Backend::D3d12, &HlslCompiler::Fxc),
+            (DeviceType::IntegratedGpu, Backend::D3d12, &HlslCompiler::Fxc),
+            (DeviceType::Cpu, Backend::Vulkan, &dxc),
+            (DeviceType::Cpu, Backend::D3d12, &dxc),
+            (DeviceType::Cpu, Backend::Gl, &HlslCompiler::Fxc),
+            (DeviceType::Cpu, Backend::D3d12, &HlslCompiler::Fxc),
         ];
-        let ranks = order.map(|(kind, backend)| rank(kind, backend));
+        let ranks = order.map(|(kind, backend, hlsl)| rank(kind, backend, hlsl));
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+    }
+
+    #[test]
+    fn auto_looks_at_gl_unless_an_interface_before_it_has_hardware() {
+        let dxc = HlslCompiler::Dxc("dxcompiler.dll".into());
+        let enough = |kind, backend, hlsl| is_enough(&rank(kind, backend, hlsl));
+        for (backend, hlsl) in
+            [(Backend::Vulkan, &HlslCompiler::Fxc), (Backend::Metal, &HlslCompiler::Fxc), (Backend::D3d12, &dxc)]
+        {
+            assert!(enough(DeviceType::IntegratedGpu, backend, hlsl), "{backend}");
+            assert!(!enough(DeviceType::Cpu, backend, hlsl), "{backend}");
+        }
+        assert!(!enough(DeviceType::DiscreteGpu, Backend::D3d12, &HlslCompiler::Fxc));
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub(in crate::gpu) mod counted;
 pub mod driver_lock;
 pub(in crate::gpu) mod external;
 pub(in crate::gpu) mod faults;
+pub(in crate::gpu) mod hlsl_compiler;
 #[cfg_attr(not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))), path = "wayland_absent.rs")]
 pub(in crate::gpu) mod wayland;
 pub(in crate::gpu) mod instance;

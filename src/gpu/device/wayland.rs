@@ -15,7 +15,7 @@ use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::CreateInstanceCallback;
 
 /// An instance, and the adapters it has.
-pub(super) type DriverAdapters = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
+pub(super) type InstanceAndAdapters = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
 
 /// The bytes of a socket's path, with the zero at its end (sockaddr_un).
 const LONGEST_PATH: usize = 108;
@@ -44,7 +44,7 @@ fn is_quiet(socket: Option<&OsStr>, display: Option<&OsStr>, folder: Option<&OsS
 }
 
 /// Makes an instance and asks it, in the way of wgpu but for the extension. `None`: no system without Wayland needs it.
-pub(super) fn vulkan_without_wayland(flags: wgpu::InstanceFlags) -> Option<DriverAdapters> {
+pub(super) fn vulkan_without_wayland(flags: wgpu::InstanceFlags) -> Option<InstanceAndAdapters> {
     let descriptor = hal::InstanceDescriptor {
         name: "wgpu",
         flags,

@@ -286,3 +286,5 @@ impl PixelTarget {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod translations;

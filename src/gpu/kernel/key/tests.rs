@@ -39,7 +39,7 @@ const LEFT: [(Choice, u32); 16] = [
 const TABLE_SAMPLES: u32 = REFINE & (KERR | DEFERRED);
 const TABLE_RAYS: u32 = DEFERRED | TABLE_SAMPLES;
 
-fn kinds() -> Vec<KernelKind> {
+pub(super) fn kinds() -> Vec<KernelKind> {
     use KernelKind::*;
     let makers = [RecordMaker::Traced, RecordMaker::Schwarzschild, RecordMaker::Kerr, RecordMaker::KerrDeferred];
     let images = [StoredFormat::Rgba8, StoredFormat::Rgba16F, StoredFormat::Rgba32F, StoredFormat::R32F];
@@ -103,7 +103,7 @@ fn kernels_read_what_the_table_says() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-struct Random(u32);
+pub(super) struct Random(pub u32);
 
 impl Random {
     fn below(&mut self, n: usize) -> usize {
@@ -112,7 +112,7 @@ impl Random {
     }
 }
 
-struct Given(Vec<(Choice, u32)>);
+pub(super) struct Given(Vec<(Choice, u32)>);
 
 impl Variant for Given {
     fn make(&self, values: &mut Values) {
@@ -122,7 +122,7 @@ impl Variant for Given {
 
 impl Given {
     /// A value for every choice that scenes make.
-    fn random(random: &mut Random) -> Self {
+    pub(super) fn random(random: &mut Random) -> Self {
         let rows = TABLE.iter().filter(|row| !row.values.is_empty());
         Self(rows.map(|row| (row.choice, row.values[random.below(row.values.len())])).collect())
     }
