@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* window.c -- frames in a plain Win32 window: shown, resized, minimised and back; then the window is destroyed before
- * its surface.
+ * its surface. As long as all goes well, the log has no errors, whatever adapters were tried and passed over.
  *
  *     window BACKEND SHOWN GO FRAME       writes what the window should show to FRAME, makes the file SHOWN once the
  *                                         window shows it, and goes on once GO is there
@@ -36,6 +36,17 @@ static int frames(BhrContext *context, BhrSurface *surface, int count) {
     return shown;
 }
 
+/* Messages of level ERROR, and the last of them. */
+static volatile LONG errors;
+static char          last_error[200];
+
+static void hear(void *user, BhrLogLevel level, const char *message) {
+    (void)user;
+    if (level != BHR_LOG_ERROR) return;
+    InterlockedIncrement(&errors);
+    snprintf(last_error, sizeof last_error, "%s", message);
+}
+
 static int is_file(const char *path) { return GetFileAttributesA(path) != INVALID_FILE_ATTRIBUTES; }
 
 int main(int argc, char **argv) {
@@ -56,6 +67,8 @@ int main(int argc, char **argv) {
     if (!CHECK(window != NULL, "no window: error %lu", GetLastError())) return check_end();
     pump();
 
+    options.log_level = BHR_LOG_ERROR;
+    options.log_fn = hear;
     if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) return check_end();
     BHR_INIT(camera);
     CHECK_OK(bhr_camera_orbit(&camera, 25.0, 0.0, 0.15));
@@ -104,6 +117,8 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_surface_resize(surface, 320, 200));
     shown = frames(context, surface, 2);
     CHECK(shown == 2, "%d frames after it came back", shown);
+
+    CHECK(errors == 0, "%ld errors in the log, the last: %s", (long)errors, last_error);
 
     /* The header wants the surface destroyed first. A host that errs gets a status, or frames that nobody sees. */
     DestroyWindow(window);
