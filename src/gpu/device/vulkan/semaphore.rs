@@ -10,6 +10,7 @@ use crate::gpu::device::process_end;
 use ash::vk;
 use ash::vk::Handle;
 use std::collections::BTreeSet;
+use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -250,17 +251,22 @@ impl Drop for GpuSemaphore {
     }
 }
 
+/// Vulkan's queue, where there are semaphores to add to its next submission or to take from it.
+fn hal_queue(queue: &wgpu::Queue, semaphores: usize) -> Option<impl Deref<Target = wgpu::hal::vulkan::Queue>> {
+    if semaphores == 0 {
+        return None;
+    }
+    // SAFETY: this file adds semaphores that live until the submission has run, and removes them; no more is done.
+    unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }
+}
+
 /// Has the next submission wait for `waits` and signal `signals`, each with the value of a timeline.
 pub(in crate::gpu) fn stage<'a>(
     queue: &wgpu::Queue,
     waits: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
     signals: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
 ) {
-    if waits.len() + signals.len() == 0 {
-        return;
-    }
-    // SAFETY: semaphores are added, which live until the submission has run.
-    let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+    let Some(hal) = hal_queue(queue, waits.len() + signals.len()) else { return };
     for (semaphore, value) in waits {
         hal.add_wait_semaphore(semaphore.raw, value, vk::PipelineStageFlags::ALL_COMMANDS);
     }
@@ -278,11 +284,7 @@ pub(in crate::gpu) fn unstage<'a>(
     waits: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
     signals: impl ExactSizeIterator<Item = (&'a GpuSemaphore, Option<u64>)>,
 ) {
-    if waits.len() + signals.len() == 0 {
-        return;
-    }
-    // SAFETY: semaphores are removed.
-    let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+    let Some(hal) = hal_queue(queue, waits.len() + signals.len()) else { return };
     for (semaphore, _) in waits {
         hal.remove_wait_semaphore(semaphore.raw);
     }
