@@ -27,15 +27,17 @@ library=$checked_library
 passed=0
 failed=0
 
-# The manifest of lavapipe, Mesa's Vulkan driver for the CPU; fails when it is not installed.
+# The manifest of lavapipe, Mesa's Vulkan driver for the CPU; fails when it is not installed. Debian may have those of
+# other architectures beside this machine's (tests/aarch64).
 lavapipe_manifest() {
-    local manifest
-    for manifest in /usr/share/vulkan/icd.d/lvp_icd*.json /usr/local/share/vulkan/icd.d/lvp_icd*.json \
-        /etc/vulkan/icd.d/lvp_icd*.json; do
-        if [ -f "$manifest" ]; then
-            printf '%s\n' "$manifest"
-            return 0
-        fi
+    local manifest folder
+    for folder in /usr/share /usr/local/share /etc; do
+        for manifest in "$folder/vulkan/icd.d/lvp_icd."{"$(uname -m).json",json}; do
+            if [ -f "$manifest" ]; then
+                printf '%s\n' "$manifest"
+                return 0
+            fi
+        done
     done
     return 1
 }

@@ -171,13 +171,13 @@ static void set_disk(double opacity, double turbulence) {
 enum { ALL = 0xff, THREE = 7, RAYS_ONLY = 0xfd, DEPTH_ONLY = 1, LIGHT_ONLY = 2 };
 
 /* However rays are found, with disks that hide and disks that do not: in `tests/run all` each with each, everyday one
- * look for each way to find rays. */
+ * look for small frames without spin and one for large ones with it. */
 static void scenes(void) {
     for (int spins = 0; spins < 2; spins++)
         for (int large = 0; large < 2; large++)
             for (int look = 0; look < 3; look++) {
                 char what[80];
-                if (!check_runs_all() && look != (2 * spins + large) % 3)
+                if (!check_runs_all() && (spins != large || look != 1 + spins))
                     continue;
                 snprintf(what, sizeof what, "spin %g, large %d, look %d", spins ? 0.9 : 0.0, large, look);
                 CHECK_OK(bhr_set_spin(context, spins ? 0.9 : 0));
@@ -214,8 +214,10 @@ static void mixed(void) {
     for (size_t i = 0; i < COUNT_OF(masks); i++) {
         char what[80];
         int  large = i % 2;
-        /* Everyday the tables of a spinning hole's lens, which lavapipe makes for seconds, are made in scenes(). */
+        /* Everyday three of them, without the tables of a spinning hole's lens, which scenes() has made. */
         int  spins = check_runs_all() && i % 3 != 0;
+        if (!check_runs_all() && i % 2 == 0)
+            continue;
         snprintf(what, sizeof what, "in memory 0x%x", masks[i]);
         in_memory = masks[i];
         CHECK_OK(bhr_set_spin(context, spins ? 0.9 : 0));

@@ -138,6 +138,7 @@ fn direction(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> Opti
 
 /// Frames of one pixel that look the way in which a pixel of the wide frame does.
 #[test]
+#[ignore = "in tests/run all; everyday: faces of a cube are perspective views, and each projection's map"]
 fn wide_frames_show_what_perspective_ones_do() {
     for (tracer, mut renderer) in both() {
         for &way in ways() {
@@ -188,8 +189,8 @@ fn tiles_of_every_projection_join() {
     for (tracer, mut renderer) in both() {
         for (i, ((projection, _), size)) in PROJECTIONS.into_iter().zip(sizes).enumerate() {
             for (j, way) in TWO_WAYS.into_iter().enumerate() {
-                // Everyday each projection in one way, each way with two projections.
-                if !runs_all() && i % 2 != j {
+                // Everyday each wide projection in one way; `pictures` has tiles of perspective ones.
+                if !runs_all() && (i == 0 || i % 2 != j) {
                     continue;
                 }
                 set(&mut renderer, projection, way);
@@ -205,8 +206,8 @@ fn tiles_of_every_projection_join() {
 }
 
 /// Whole small frames of a smooth disk; and with turbulence, by samples, a part of a large frame with the shadow's
-/// edge, because tables of spinning holes are for frames that large. Everyday each projection in one way, each way with
-/// two projections: looks do not regard what becomes of rays.
+/// edge, because tables of spinning holes are for frames that large. Everyday each wide projection in one way: looks do
+/// not regard what becomes of rays, and most other tests see perspective frames.
 #[test]
 fn gpu_and_cpu_pictures_of_every_projection_agree() {
     let mut renderers = both();
@@ -217,7 +218,7 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
         let width = size[0].min(100);
         let part = Region { full_width, full_height, x: middle - width / 2, y: full_height / 2 - size[1] / 2 };
         for (j, &way) in ways().iter().enumerate() {
-            if !runs_all() && i % 2 != j {
+            if !runs_all() && (i == 0 || i % 2 != j) {
                 continue;
             }
             // Each ray by itself is small frames' way.
@@ -276,6 +277,7 @@ fn looks_in_single_precision() {
 }
 
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about fisheyes"]
 fn outside_the_circle_there_is_nothing() {
     let size = [70, 50];
     let inside = |x: u32, y: u32| (f64::from(x) - 34.5).hypot(f64::from(y) - 24.5) <= 25.0;
@@ -354,6 +356,7 @@ fn basis(v: DVec3) -> DMat3 {
 /// Sirius, with no other bright star near, is brought to places on and beside the borders of faces: what each face
 /// draws of it sums up to what one face draws of it in its middle.
 #[test]
+#[ignore = "in tests/run all; everyday: a field of stars has its flux, faces are perspective views"]
 fn stars_keep_their_light_across_the_borders_of_faces() {
     const SIDE: u32 = 128;
     let star = catalogue::stars().next().unwrap().direction;

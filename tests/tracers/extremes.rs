@@ -130,6 +130,7 @@ fn frames_at_the_extremes() {
 /// where the camera looks at the hole or away from it. Everyday half as many as of small frames: among the first 15 is
 /// every spin, motion, projection and kind of tables.
 #[test]
+#[ignore = "in tests/run all; everyday: small frames at the same extremes"]
 fn table_frames_at_the_extremes() {
     let mut random = Random(13);
     let mut renderers = both();

@@ -107,12 +107,12 @@ fn half_is_as_full_within_its_bound() {
 }
 
 /// In 8 bits one tracer is as the other at half resolution, and both are as they are at full resolution, but for
-/// structure, which may be finer than a block. Everyday in the middle of the frame, where the matter is, and of shapes
-/// the torus alone: blocks know nothing of shapes.
+/// structure, which may be finer than a block. Everyday in the middle of the frame, where the matter is, beside a disk
+/// and with structure: blocks know nothing of shapes.
 #[test]
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
-    let everyday = ["halo beside a thin disk", "spots", "within the torus", "turbulent torus"];
+    let everyday = ["halo beside a thin disk", "turbulent torus"];
     for (name, scene) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
         let [full_width, full_height] = [160, 90];
         let middle = Region { full_width, full_height, x: 40, y: 30 };
@@ -138,6 +138,7 @@ fn the_tracers_agree() {
 /// I_nu and optical depth are told within the tolerance as well, by both tracers. Everyday by one tracer for each
 /// shape and view, because they are told of the same sums.
 #[test]
+#[ignore = "in tests/run all; everyday: pictures at half resolution, views at full"]
 fn views_are_within_the_bound() {
     for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
         for (j, (name, scene)) in scenes().into_iter().take(4).enumerate() {
@@ -164,6 +165,7 @@ fn views_are_within_the_bound() {
 /// and one of another projection, because blocks know nothing of shapes; and one of them again, because each part is a
 /// frame after others.
 #[test]
+#[ignore = "in tests/run all; everyday: parts of frames at full resolution"]
 fn parts_have_the_bytes_of_the_whole() {
     let size = if runs_all() { [101, 67] } else { [51, 35] };
     for (tracer, mut renderer) in both() {
@@ -193,6 +195,7 @@ fn parts_have_the_bytes_of_the_whole() {
 /// A frame in which some thousand pixels are listed for rays of their own, several for each thread of a software
 /// driver: the next one has the same bytes, at half resolution as at full, and both are alike.
 #[test]
+#[ignore = "in tests/run all; everyday: the tracers agree at half resolution"]
 fn long_lists_are_seen_through() {
     let mut gpu = gpu();
     let (_, scene) = scenes().remove(1);
@@ -209,6 +212,7 @@ fn long_lists_are_seen_through() {
 
 /// Every face of a cube has blocks of its own, also where its side is odd.
 #[test]
+#[ignore = "in tests/run all; everyday: faces of cubes at full resolution, perspective frames at half"]
 fn faces_of_a_cube_are_apart() {
     for (tracer, mut renderer) in both() {
         let (_, mut scene) = scenes().remove(0);

@@ -64,8 +64,8 @@ fn frames_list_every_kernel_that_they_run() {
     let mut renderer = renderer();
     // Opening the device makes one by itself.
     let at_first = missing(&renderer)[1];
-    // Everyday some changes come two at a time: a frame that lists too few kernels for one of them does so for both.
-    let everyday = [1, 4, 7, 9, 11, 12, 14, 15];
+    // Everyday changes come some at a time: a frame that lists too few kernels for one of them does so for all.
+    let everyday = [1, 7, 11, 14, 15];
     let mut frames = 0;
     for (index, change) in CHANGES.iter().enumerate() {
         change(&mut renderer.scene);
@@ -185,6 +185,7 @@ fn steps_apart(format: PixelFormat, own: &[u8], any: &[u8]) -> f64 {
 /// Their pixels are the same, but for what a driver's compiler rounds otherwise in another kernel: NVIDIA's joins
 /// multiplications with additions where it likes.
 #[test]
+#[ignore = "in tests/run all; everyday: each film's and projection's own kernel, which software drivers take"]
 fn a_kernel_for_any_film_and_projection_puts_the_same_pixels() {
     let mut renderer = renderer();
     let exactly = renderer.adapter().software;

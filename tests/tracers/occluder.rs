@@ -44,6 +44,7 @@ fn output(renderer: &mut Renderer, kind: RayOutputKind) -> Vec<f32> {
 
 /// Alpha of each pixel tells which crossings are left: the distances that outputs give say the same.
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about things, and a mesh of a sphere hides what it should"]
 fn things_hide_what_lies_behind_them() {
     for (spin, tables) in WAYS {
         for (name, mut renderer) in both() {
@@ -213,6 +214,7 @@ fn half_of_the_matter_lies_before_the_nearest_place() {
 /// Matter with and without structure, a spot and a disk behind things of any shape, edges refined: the tracers agree.
 /// Everyday in two of the four ways, in which each setting has each of its values.
 #[test]
+#[ignore = "in tests/run all; everyday: things with a disk, and half of the matter before the nearest place"]
 fn the_tracers_agree_about_matter_behind_things() {
     // Everyday fewer pixels, with bounds for as many.
     let (size, least, most) = if runs_all() { (SIZE, 1000, 60) } else { ([84, 56], 500, 30) };

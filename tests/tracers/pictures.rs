@@ -148,6 +148,7 @@ fn scenes() -> Vec<NamedScene> {
 
 /// The pixels of the turbulent scenes that change by more than a few steps.
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about turbulent scenes"]
 fn turbulence_shows_its_seed_and_its_time() {
     let size = [192, 108];
     type Change = (&'static str, fn(&mut Renderer));
@@ -182,10 +183,24 @@ fn turbulence_shows_its_seed_and_its_time() {
     }
 }
 
+/// Everyday every second scene or so: among them is each setting with a kernel or a path of its own.
 #[test]
 fn gpu_and_cpu_pictures_agree() {
     let size = [192, 108];
-    for (name, set) in scenes() {
+    let everyday = [
+        "edge-on",
+        "r = 3",
+        "orbit",
+        "free fall at a spinning horizon",
+        "retrograde, translucent, half the effects, fast camera, another axis and mass",
+        "plunging with spin",
+        "plunging, from inside the horizon",
+        "turbulent",
+        "the default scene, looked up",
+        "the default scene, looked up, with spin",
+        "turbulent, plunging",
+    ];
+    for (name, set) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
         let mut pictures = both().map(|(_, mut renderer)| {
             set(&mut renderer);
             picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false)
@@ -224,6 +239,7 @@ fn gl_and_cpu_pictures_agree() {
 
 /// Everyday the scenes where something diverges: at the horizon, within it, at the photon orbit, and in fast motion.
 #[test]
+#[ignore = "in tests/run all; everyday: frames at the extremes"]
 fn light_is_finite_in_every_pixel() {
     let diverge = ["horizon", "inside", "plunging", "r = 3", "fast"];
     for (name, set) in
@@ -277,6 +293,7 @@ fn tiles_and_repetitions_give_the_same_bytes() {
 /// observers in between; tile by tile; and in every frame of an observer that moves there and back. Everyday one
 /// observer for each kind of table.
 #[test]
+#[ignore = "in tests/run all; everyday: tiles and repetitions have the same bytes"]
 fn tables_give_the_same_bytes() {
     let format = PixelFormat::Rgba8Srgb;
     let (small, size) = ([40, 30], if runs_all() { [210, 140] } else { [120, 80] });
@@ -341,6 +358,7 @@ fn furthest_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> f64 {
 /// same sums, and the same bytes on software drivers; hardware's compilers may contract multiplications and additions
 /// in one and not in the other (on an H200 some bytes differ).
 #[test]
+#[ignore = "in tests/run all; everyday: outputs in tests/interop, which are as such frames"]
 fn pixels_put_by_rows_are_the_same() {
     let set = |renderer: &mut Renderer, spin: f64, samples: u32, tables: LensTables, view: View| {
         let scene = &mut renderer.scene;

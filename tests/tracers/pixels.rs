@@ -289,6 +289,7 @@ fn pixels_are_the_means_of_finer_frames_cpu() {
 }
 
 #[test]
+#[ignore = "in tests/run all; everyday: the CPU's pixels are such means, and both tracers agree"]
 fn pixels_are_the_means_of_finer_frames_gpu() {
     pixels_are_the_means_of_finer_frames("gpu", gpu());
 }

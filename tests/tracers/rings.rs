@@ -142,6 +142,7 @@ fn turn(camera: &Camera, pixels: f64) -> Camera {
 }
 
 #[test]
+#[ignore = "in tests/run all; everyday: rings have no gaps and as much light as many rays find"]
 fn rings_are_steady_while_the_camera_turns() {
     // The observer is so far that the shadow is 3 pixels wide: all light counts, as its rings are no more than a
     // thousandth.
@@ -190,6 +191,7 @@ fn edge_errors(seen: &Window, truth: &Window) -> (usize, f64, f64) {
 }
 
 #[test]
+#[ignore = "in tests/run all; everyday: rings have no gaps and as much light as many rays find"]
 fn edges_of_the_disk_are_filtered_over_the_pixel() {
     let mut tracers = both();
     // Everyday what holds the disk from afar, and its inner edge from near by.

@@ -137,6 +137,7 @@ fn pixels_show_about_what_many_rays_find() {
 /// Where structure is larger than pixels, layers are so thin that they leave no ripples along filaments: a picture is
 /// near to what rays find that are summed in fine cells.
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about structure"]
 fn layers_leave_no_ripples() {
     for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
         for (j, (x, y)) in [(300, 700), (1100, 560), (500, 400)].into_iter().enumerate() {
@@ -167,6 +168,7 @@ fn layers_leave_no_ripples() {
 /// Films do not crawl: what changes from frame to frame other than evenly is at most 1.5 times what it is where each
 /// pixel has 16 rays. A view that turns, and time that passes.
 #[test]
+#[ignore = "in tests/run all; everyday: rings are whole, and a fall has no seam"]
 fn films_do_not_crawl() {
     // Everyday, a few frames of one film.
     let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (3, [48, 27], 1) };

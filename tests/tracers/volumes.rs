@@ -172,14 +172,14 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Everyday every shape in one scene, and every place of the observer and of what is beside the matter.
-/// `the_views_of_matter_agree` has the other scenes.
+/// Everyday every shape in one scene, spots, and an observer within the matter. `the_views_of_matter_agree` has the
+/// other scenes, and half resolution has matter beside a disk.
 #[test]
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     let mut worst = Vec::new();
     let size = if runs_all() { [128, 72] } else { [96, 54] };
-    let everyday = ["disk without spin", "all four", "thin disk within", "spots", "within the torus"];
+    let everyday = ["all four", "spots", "within the torus"];
     for (name, scene) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| {
             renderer.scene = scene.clone();
@@ -201,6 +201,7 @@ fn the_tracers_agree() {
 /// Beside the shadow's edge pixels are the mean of many rays. Those of a ray that circles the hole in matter take so
 /// many turns of loops that a software driver may end them all: no pixel may lack a part of its light.
 #[test]
+#[ignore = "in tests/run all; everyday: the tracers agree about matter, edges refined"]
 fn no_pixel_of_the_edge_is_dark() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     let halo = Volume {
@@ -271,6 +272,7 @@ fn the_views_of_matter_agree() {
 /// Whatever the projection and wherever the observer, light stays finite and alpha within its range. Everyday each
 /// place and absorption on one tracer, each place on both.
 #[test]
+#[ignore = "in tests/run all; everyday: random rays through random matter, and frames at the extremes"]
 fn matter_is_finite_everywhere() {
     for (i, (name, mut renderer)) in both().into_iter().enumerate() {
         for (j, (spin, distance)) in [(0.998, 1.6), (0.0, 2.5), (0.5, 4.0), (-0.9, 1e5)].into_iter().enumerate() {

@@ -118,16 +118,17 @@ viewer_takes_keys() {
         viewer_until 60 viewer_title_says 'a +0.000' && viewer_close
 }
 
-# A preset has the matter that --matter says, with auto the one that the rate allows, and the title says which.
+# A preset has the matter that --matter says, with auto the one that the rate allows, and the title says which. On the
+# CPU, as each preset is a kernel on the GPU.
 viewer_chooses_matter() {
-    viewer_open --size 64x36 --preset physical --matter deep &&
+    viewer_open --backend cpu --size 64x36 --preset physical --matter deep &&
         viewer_until 60 viewer_title_says 'physical, deep' || return 1
     xdotool key y && viewer_until 60 viewer_says 'preset: observatory, deep matter' || return 1
     xdotool key y && viewer_until 60 viewer_says 'preset: teaching, thin matter' &&
         viewer_until 60 viewer_title_says 'teaching, thin' && viewer_close || return 1
-    viewer_open --size 64x36 --preset physical --rate 0.01 &&
+    viewer_open --backend cpu --size 64x36 --preset physical --rate 0.01 &&
         viewer_until 60 viewer_title_says 'physical, deep' && viewer_close || return 1
-    viewer_open --size 64x36 --preset physical --rate 5e5 &&
+    viewer_open --backend cpu --size 64x36 --preset physical --rate 5e5 &&
         viewer_until 60 viewer_title_says 'physical, thin' && viewer_close
 }
 

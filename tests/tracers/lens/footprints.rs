@@ -16,6 +16,7 @@ use rayon::prelude::*;
 /// integrates takes the difference to its neighbours: it is held to fine pixels, of less than 1 / 150 of the shadow's
 /// angle, away from edges.
 #[test]
+#[ignore = "in tests/run all; everyday: a field of stars has the flux that the lens equation gives"]
 fn footprints_agree_with_differences() {
     let (width, height) = (24, 16);
     let mut renderers = both();
