@@ -248,7 +248,7 @@ static int run(Moment moment, void (*limit)(size_t), size_t more, const char *wh
 }
 
 static void memory(Moment moment, int all) {
-    static const size_t some[] = {0, 256 * KIB, MIB, 4 * MIB, 16 * MIB, 64 * MIB};
+    static const size_t some[] = {0, MIB, 4 * MIB, 16 * MIB};
     unsigned            without = 0;
     for (size_t i = 0; !all && i < COUNT_OF(some); i++) {
         const int said = run(moment, limit_memory, some[i], "memory");

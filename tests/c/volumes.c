@@ -91,15 +91,11 @@ static void shorter_struct(BhrContext *context) {
 }
 
 /* In `tests/run all` each limit is tried with every shape. Everyday with one: where only some shapes read the member,
- * with one of them, else with all in turn. Each shape is a kernel of its own, which lavapipe compiles for seconds: on a
- * GPU the disk, which flows as if in orbit, stands for all others, and what it does not read is tried on the CPU. */
-static int is_tried(size_t limit, BhrVolumeShape shape, int on_cpu) {
+ * with one of them, else with all in turn. */
+static int is_tried(size_t limit, BhrVolumeShape shape) {
     const size_t member = VOLUME[limit].offset;
     if (check_runs_all()) {
         return 1;
-    }
-    if (!on_cpu || member == offsetof(BhrVolume, thickness)) {
-        return shape == BHR_VOLUME_DISK;
     }
     if (member == offsetof(BhrVolume, width) || member == offsetof(BhrVolume, radius)) {
         return shape == BHR_VOLUME_TORUS;
@@ -107,16 +103,13 @@ static int is_tried(size_t limit, BhrVolumeShape shape, int on_cpu) {
     if (member == offsetof(BhrVolume, opening)) {
         return shape == BHR_VOLUME_JET;
     }
+    if (member == offsetof(BhrVolume, thickness)) {
+        return shape == BHR_VOLUME_DISK;
+    }
     return (BhrVolumeShape)(limit % (BHR_VOLUME_JET + 1)) == shape;
 }
 
-/* How the shape flows while the limit is tried: in each way by turns. On a GPU everyday in orbit: other ways are other
- * kernels. */
-static BhrFlow flow_of(size_t limit, int on_cpu) {
-    return check_runs_all() || on_cpu ? (BhrFlow)(limit % 3) : BHR_FLOW_KEPLERIAN;
-}
-
-static void numbers(Watch *watch, BhrContext *context, int on_cpu) {
+static void numbers(Watch *watch, BhrContext *context) {
     const double no_number[] = {NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < COUNT_OF(VOLUME); i++) {
         const Limits *limits = &VOLUME[i];
@@ -133,14 +126,14 @@ static void numbers(Watch *watch, BhrContext *context, int on_cpu) {
             for (BhrVolumeShape shape = BHR_VOLUME_DISK; shape <= BHR_VOLUME_JET; shape++) {
                 BhrVolume volume = a_volume();
                 volume.shape = shape;
-                volume.flow = flow_of(i, on_cpu);
+                volume.flow = (BhrFlow)(i % 3);
                 volume.flags = shape % 2 ? BHR_VOLUME_POWER_LAW : BHR_VOLUME_RETROGRADE;
                 volume.width = 100.0;
                 /* The outer radius is to be larger than the inner one. */
                 const int edge = limits->offset == offsetof(BhrVolume, inner_radius) && k == 1;
                 put(&volume, limits->offset, edge ? 9999.0 : good[k]);
                 volume.outer_radius = edge ? 1e4 : volume.outer_radius;
-                if (is_tried(i, shape, on_cpu) && volume.outer_radius > 0.0 && volume.width >= 0.01 * volume.radius) {
+                if (is_tried(i, shape) && volume.outer_radius > 0.0 && volume.width >= 0.01 * volume.radius) {
                     CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));
                     finite_frame(context, limits->name, k);
                 }
@@ -475,7 +468,7 @@ int main(int argc, char **argv) {
     arrays(&watch, context);
     shorter_struct(context);
     CHECK_OK(bhr_set_volumes(context, watch.volumes, sizeof watch.volumes[0], watch.volume_count));
-    numbers(&watch, context, backend == BHR_BACKEND_CPU);
+    numbers(&watch, context);
     flags_and_kinds(&watch, context);
     rays(&watch, context);
     views(&watch, context);

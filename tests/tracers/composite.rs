@@ -53,6 +53,7 @@ fn lens_map(renderer: &mut Renderer) -> Vec<[f32; 4]> {
 
 /// Within a step of 8 bits, but where a pixel shows more of the sky than one direction can stand for.
 #[test]
+#[ignore = "in tests/run all; everyday: the composite example, spheres at their lensed places"]
 fn the_lens_map_shows_a_sky_as_bhr_does() {
     let map = Arc::new(map());
     for (name, mut renderer) in both() {

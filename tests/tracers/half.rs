@@ -81,6 +81,7 @@ fn errors(exact: &[f32], found: &[f32]) -> Vec<f32> {
 /// Without a sky, whose stars would hide them, errors are within the tolerance, and nearly all far within it. In so
 /// small a picture structure is finer than a block: the rule allows four times as much there, and finds it less surely.
 #[test]
+#[ignore = "in tests/run all; everyday: pictures at half resolution are those at full"]
 fn half_is_as_full_within_its_bound() {
     let mut renderer = cpu();
     // The bounds hold at this size: everyday in the middle of it, where the matter is. `the_tracers_agree` holds more

@@ -170,6 +170,7 @@ fn matter_with_depth_is_cut_at_the_distance() {
 /// Without spin a ray is alike on both sides of its place nearest to the hole, and so is a haze at rest: half of its
 /// depth lies before that place. That holds where light is bent by much, too.
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about things, and a lensed sphere hides what it should"]
 fn half_of_the_matter_lies_before_the_nearest_place() {
     // Everyday in a smaller frame: rays are alike in each, and their paths take long.
     let size = if runs_all() { SIZE } else { [60, 40] };

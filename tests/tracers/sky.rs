@@ -63,8 +63,8 @@ const ALL: u32 = Sky::STARS | Sky::MILKY_WAY | Sky::MAP | Sky::GRID;
 /// Looked up and traced, near and far, spinning or not, of every part of the sky and all together; maps filtered texel
 /// by texel, and by a sampler, whose weights have but 8 bits. In `tests/run all` each part alone is seen in every way,
 /// else in one, because all of them together show its faults in the others; and every picture is made with and without
-/// the sampler, else each in one of these ways, because samplers know nothing of rays. All together are not seen from afar everyday, where the Milky Way alone
-/// is.
+/// the sampler, else each in one of these ways, because samplers know nothing of rays. All together are not seen from
+/// afar everyday, where the Milky Way alone is.
 #[test]
 fn gpu_and_cpu_pictures_agree() {
     for sampler in [false, true] {

@@ -125,7 +125,7 @@ fn records_agree_with_integration() {
     let mut renderers = both();
     let mut random = Random(23);
     let mut found: [[Comparison; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 6, 1000) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 3, 1000) {
         let mut scene = random_observer(&mut random, index);
         aim(&mut scene, &mut random);
         let truth = Truth::new(&scene, width, height);
