@@ -316,7 +316,7 @@ fn keep_display(instance: Option<wgpu::Instance>) {
     }
 }
 
-/// A driver that panics has no adapters.
+/// A driver that panics has no adapters; where Direct3D 12 was asked, the others are asked again without it.
 fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> DriverAdapters {
     // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
     // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
@@ -324,12 +324,15 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> Dri
     process_end::watch();
     let _driver = driver_lock::lock();
     let _attempt = attempt::begin();
-    let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
-    process_end::watch();
-    let found = found.unwrap_or_else(|_| {
-        log::warn!("the search for adapters of {backends:?} panicked");
-        DriverAdapters::NONE
-    });
+    let search = |backends| {
+        let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
+        process_end::watch();
+        found.inspect_err(|_| log::warn!("the search for adapters of {backends:?} panicked")).ok()
+    };
+    let d3d12 = wgpu::Backends::DX12 & wgpu::Instance::enabled_backend_features();
+    let others = backends - d3d12;
+    let found = search(backends).or_else(|| if others == backends { None } else { search(others) });
+    let found = found.unwrap_or(DriverAdapters::NONE);
     if found.list.is_empty() {
         log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
     }
