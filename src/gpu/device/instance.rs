@@ -31,15 +31,21 @@ pub(super) fn ask(backends: wgpu::Backends, flags: wgpu::InstanceFlags, wayland:
     {
         return DriverAdapters { instance, list, hlsl: HlslCompiler::Fxc };
     }
-    let mut found = DriverAdapters::NONE;
-    for hlsl in HlslCompiler::all() {
-        // Drivers that do not take what DXC makes have no adapters with it, nor have any with a DXC that does not load.
-        found = with_compiler(backends, flags, hlsl);
-        if !backends.contains(wgpu::Backends::DX12) || found.has_d3d12() {
-            break;
+    let asks_d3d12 = backends.intersects(wgpu::Backends::DX12 & wgpu::Instance::enabled_backend_features());
+    with_compiler(backends, flags, if asks_d3d12 { compiler(flags) } else { HlslCompiler::Fxc })
+}
+
+/// The compiler that Direct3D 12's drivers take: they have no adapters with a DXC that does not load, nor where they do
+/// not take what it makes. Found out by themselves, so that no other driver is loaded twice.
+fn compiler(flags: wgpu::InstanceFlags) -> HlslCompiler {
+    let serves = |hlsl: &HlslCompiler| {
+        let found = *hlsl == HlslCompiler::Fxc || with_compiler(wgpu::Backends::DX12, flags, hlsl.clone()).has_d3d12();
+        if !found {
+            log::info!("Direct3D 12 has no adapter with {hlsl:?}");
         }
-    }
-    found
+        found
+    };
+    HlslCompiler::all().into_iter().find(serves).unwrap_or(HlslCompiler::Fxc)
 }
 
 fn with_compiler(backends: wgpu::Backends, flags: wgpu::InstanceFlags, hlsl: HlslCompiler) -> DriverAdapters {
