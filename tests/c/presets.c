@@ -331,12 +331,10 @@ int main(int argc, char **argv) {
     pictures(context);
     refusals(context);
     refused_options(context);
+    looks_with_depth(context);
     whose_volumes(context);
     choices(context);
-    if (check_runs_all() || backend == BHR_BACKEND_CPU) { /* looks are settings, of which tracers know nothing */
-        looks_with_depth(context);
-        states_what_the_header_states(context);
-    }
+    states_what_the_header_states(context);
     bhr_context_destroy(context);
     return check_end();
 }

@@ -239,7 +239,7 @@ fn the_brightest_light_stays_in_bounds() {
 }
 
 #[test]
-#[ignore = "in tests/run all; everyday: memory in tests/c"]
+#[ignore = "in tests/run all; everyday: large frames in tests/c"]
 fn a_4k_frame_takes_at_most_400_mb() {
     // Everyday the hole whose tables are the larger ones.
     let spins = [0.9, 0.0];

@@ -29,7 +29,6 @@ fn made(renderer: &mut Renderer, eyes: &[f64]) -> Vec<(u64, Vec<u8>)> {
 
 /// Everyday each tracer with one kind of tables: what is kept is chosen by one rule.
 #[test]
-#[ignore = "in tests/run all; everyday: columns are seen from their eyes"]
 fn tables_of_two_eyes_are_not_made_anew() {
     for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
         for (j, spin) in [0.0, 0.9].into_iter().enumerate() {

@@ -170,7 +170,7 @@ fn matter_with_depth_is_cut_at_the_distance() {
 /// Without spin a ray is alike on both sides of its place nearest to the hole, and so is a haze at rest: half of its
 /// depth lies before that place. That holds where light is bent by much, too.
 #[test]
-#[ignore = "in tests/run all; everyday: both tracers agree about things, and a lensed sphere hides what it should"]
+#[ignore = "in tests/run all; everyday: matter with depth is cut at the distance"]
 fn half_of_the_matter_lies_before_the_nearest_place() {
     // Everyday in a smaller frame: rays are alike in each, and their paths take long.
     let size = if runs_all() { SIZE } else { [60, 40] };
@@ -215,7 +215,7 @@ fn half_of_the_matter_lies_before_the_nearest_place() {
 /// Matter with and without structure, a spot and a disk behind things of any shape, edges refined: the tracers agree.
 /// Everyday in two of the four ways, in which each setting has each of its values.
 #[test]
-#[ignore = "in tests/run all; everyday: things with a disk, and half of the matter before the nearest place"]
+#[ignore = "in tests/run all; everyday: things with a disk, and matter is cut at the distance"]
 fn the_tracers_agree_about_matter_behind_things() {
     // Everyday fewer pixels, with bounds for as many.
     let (size, least, most) = if runs_all() { (SIZE, 1000, 60) } else { ([84, 56], 500, 30) };

@@ -228,7 +228,7 @@ impl Wanted<'_> {
 
 /// LIGHT has the bytes of the frame alone: with edges refined, several samples, glare, turbulence, and in regions.
 #[test]
-#[ignore = "in tests/run all; everyday: outputs in tests/interop and tests/c are frames alone"]
+#[ignore = "in tests/run all; everyday: outputs in tests/interop"]
 fn light_is_the_frame_alone() {
     for (name, mut renderer) in both() {
         for (samples, bloom, turbulence, spin) in [(1, 0.0, 0.0, 0.9), (3, 0.0, 1.0, 0.0), (1, 0.3, 0.0, 0.0)] {

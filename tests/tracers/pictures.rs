@@ -183,7 +183,7 @@ fn turbulence_shows_its_seed_and_its_time() {
     }
 }
 
-/// Everyday every second scene or so: among them is each setting with a kernel or a path of its own.
+/// Everyday half of the scenes, which together have nearly every setting.
 #[test]
 fn gpu_and_cpu_pictures_agree() {
     let size = [192, 108];

@@ -142,7 +142,7 @@ fn turn(camera: &Camera, pixels: f64) -> Camera {
 }
 
 #[test]
-#[ignore = "in tests/run all; everyday: rings have no gaps and as much light as many rays find"]
+#[ignore = "in tests/run all; everyday: pixels change evenly while the camera pans"]
 fn rings_are_steady_while_the_camera_turns() {
     // The observer is so far that the shadow is 3 pixels wide: all light counts, as its rings are no more than a
     // thousandth.

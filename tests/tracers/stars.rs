@@ -401,7 +401,7 @@ fn each_star_is_steady_while_the_camera_turns() {
 /// edge of the shadow, where the lens squeezes the sky and stars fade into their mean light; at the Einstein ring; far
 /// from the hole.
 #[test]
-#[ignore = "in tests/run all; everyday: a field of stars has the flux that the lens equation gives"]
+#[ignore = "in tests/run all; everyday: each star is steady while the camera turns"]
 fn nothing_sparkles_while_the_camera_turns() {
     let size = [640, 360];
     let windows = [(0.17, 1.0), (0.2, 3.0), (0.36, 0.1), (0.36, 4.0), (0.7, 0.2), (0.75, 3.0)];
@@ -558,7 +558,7 @@ fn procedural_light_is_that_of_all_its_stars() {
 }
 
 #[test]
-#[ignore = "in tests/run all; everyday: memory in tests/c"]
+#[ignore = "in tests/run all; everyday: large frames in tests/c"]
 fn a_4k_frame_of_a_procedural_sky_stays_within_its_memory() {
     let mut renderer = new_gpu();
     renderer.scene.sky.flags = Sky::STARS | Sky::PROCEDURAL;

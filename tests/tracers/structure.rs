@@ -168,7 +168,7 @@ fn layers_leave_no_ripples() {
 /// Films do not crawl: what changes from frame to frame other than evenly is at most 1.5 times what it is where each
 /// pixel has 16 rays. A view that turns, and time that passes.
 #[test]
-#[ignore = "in tests/run all; everyday: rings are whole, and a fall has no seam"]
+#[ignore = "in tests/run all; everyday: pixels change evenly while the camera pans"]
 fn films_do_not_crawl() {
     // Everyday, a few frames of one film.
     let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (3, [48, 27], 1) };

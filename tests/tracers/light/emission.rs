@@ -108,7 +108,7 @@ fn a_distant_disk_is_as_bright_as_the_table_says() {
 
 /// With spin rays of the tables are as bright as those that are traced, and the GPU's as the CPU's.
 #[test]
-#[ignore = "in tests/run all; everyday: both tracers agree about g with spin, and about pictures"]
+#[ignore = "in tests/run all; everyday: views and pictures of both tracers agree with spin"]
 fn with_spin_all_ways_to_find_rays_agree() {
     for spin in [0.9, -0.998] {
         let mut all = Vec::new();
