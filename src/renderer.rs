@@ -484,9 +484,9 @@ impl Renderer {
         if let Tracer::Cpu(tracer) = &mut *self.tracer.lock() {
             return tracer.transfer_rays(&self.scene, rays, found);
         }
-        let (emitters, settings) = transfer_setup(&self.scene)?;
+        let setup = transfer_setup(&self.scene, rays)?;
         for (ray, found) in rays.iter().zip(found) {
-            *found = transfer_ray(&self.scene, &settings, &emitters, ray);
+            *found = transfer_ray(&self.scene, &setup, ray);
         }
         Ok(())
     }

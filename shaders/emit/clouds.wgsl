@@ -2,21 +2,22 @@
 // The structure of matter with depth. Mirrors src/emit/clouds.rs, where the reasons are; the struct is `CloudUniform`
 // of src/gpu/frame/uniforms/clouds.rs. Knows no light and no ray.
 //
-// A kernel declares `clouds`, a buffer with one `Cloud` for each volume of the scene, and `filament_texel` of
-// emit/filaments; emit/volumes calls what is here.
+// A kernel declares `clouds`, a buffer with one `Cloud` for each volume of the scene, and `baked_factor`, which reads
+// the textures that emit/bake.wgsl made: the factor on the density of a volume at a place (turns, share of the rows,
+// periods of the layers), between texels and between whole levels, counted from the finest one that is there.
 
 #import constants
-#import emit/bands
-#import emit/filaments
 #import emit/shape
 #import shared/math
 #requires var clouds: Clouds
+#requires fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32
 
 struct Cloud {
     // The standard deviation of ln P, which is 0 without structure.
     strength: f32,
-    clumping: f32,
-    heating: f32,
+    // ln of the factor on the temperature over ln of that on the density, and what is added.
+    heat_power: f32,
+    heat_log: f32,
     // The pattern's period in ln r.
     period: f32,
     // 1 over the thickness; 1 for a jet, else 0; and a jet's opening and radius.
@@ -24,19 +25,17 @@ struct Cloud {
     is_jet: u32,
     opening: f32,
     radius: f32,
-    seed: u32,
-    // The number of the first band.
-    first_band: i32,
-    // 1 if the angular velocity changes with the distance from the axis, else 0.
-    leans: u32,
-    unused: u32,
-    bands: array<Band, MOST_BANDS>,
+    // ln r where the rows of the grid begin, and 1 over the e-folds that they reach through.
+    first_ln_r: f32,
+    per_reach: f32,
+    // Rows of the finest level an e-fold that are told from each other.
+    seen_rows: f32,
+    // The finest level that is there.
+    finest: f32,
 }
 
 struct Clouds {
     volumes: array<Cloud, MOST_VOLUMES>,
-    // The variance of each level of the filaments and of the next one; 0, 0.
-    variances: array<vec4<f32>, FILAMENT_LEVELS>,
 }
 
 // Where and when matter is asked for: r, cos th, azimuth, M after the reference time.
@@ -47,71 +46,42 @@ struct CloudPlace {
     later: f32,
 }
 
-// How far apart places must be to be told from each other: across the ray, M; along it, texels of the pattern.
-struct Blur {
-    footprint: f32,
-    spacing: f32,
+// Where matter has its structure; `carried`: dph/dt, and the change of ln r with time.
+fn cloud_place(index: u32, at: CloudPlace, carried: vec2<f32>) -> vec3<f32> {
+    let ln_r = log(at.r * max(1.0 - carried.y * at.later, LEAST_CARRIED));
+    return vec3<f32>(
+        (at.azimuth - carried.x * at.later) / TAU,
+        (ln_r - clouds.volumes[index].first_ln_r) * clouds.volumes[index].per_reach,
+        cloud_height(index, at.r, at.cos).x / FILAMENT_HEIGHT,
+    );
 }
 
-// The factors on density and temperature. The two generations of a band go side by side, in the components of vectors,
-// also where one has the weight 0: GPUs then wait for both at once.
-fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32> {
-    let strength = clouds.volumes[index].strength;
-    if strength <= 0.0 {
+// The texels of the grid's finest level that are not told from each other where a pixel is `footprint` wide, M.
+fn cloud_blur(index: u32, r: f32, cosine: f32, footprint: f32) -> f32 {
+    let texels = cloud_texels(index);
+    let sin = sqrt(max((1.0 - cosine) * (1.0 + cosine), 1e-12));
+    let around = texels.x / sin;
+    let across = texels.z * cloud_height(index, r, cosine).y * sin;
+    let finest = max(max(clouds.volumes[index].seen_rows, across), around);
+    return max(max(CLOUD_SHARP * footprint / r * finest, around / max(texels.y, across)), 1.0);
+}
+
+// The factor on the density at a place, where so many texels of the finest level are not told from each other.
+fn cloud_factor(index: u32, place: vec3<f32>, blur: f32) -> f32 {
+    let level = log2(blur);
+    let left = clamp(f32(FILAMENT_LAST) + 1.0 - level, 0.0, 1.0);
+    return 1.0 + (baked_factor(index, place, max(level - clouds.volumes[index].finest, 0.0)) - 1.0) * left;
+}
+
+// The factors on density and temperature.
+fn cloud_pattern(index: u32, at: CloudPlace, carried: vec2<f32>, footprint: f32) -> vec2<f32> {
+    if clouds.volumes[index].strength <= 0.0 {
         return vec2<f32>(1.0);
     }
-    let clumping = clouds.volumes[index].clumping;
-    let ln_r = log(at.r);
-    let sin2 = max((1.0 - at.cos) * (1.0 + at.cos), 1e-12);
-    let sin = sqrt(sin2);
-    let height = cloud_height(index, at.r, at.cos);
-    let texels = cloud_texels(index);
-    let seed = clouds.volumes[index].seed;
-    // Texels per rad: around, and across the shape. Names that end with 2 are squares, which spare roots.
-    let around = texels.x / sin;
-    let across = texels.z * height.y * sin;
-    let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));
-    let widest = CLOUD_SHARP * blur.footprint / at.r;
-    let lean2 = select(0.0, at.cos * at.cos / sin2, clouds.volumes[index].leans == 1u);
-    let wound_texels = 1.0 / (WOUND * texels.y);
-
-    let shown = bands_at(ln_r);
-    var sum = 0.0;
-    var lost = vec2<f32>(0.0);
-    for (var k = 0u; k < shown.count; k += 1u) {
-        let number = shown.first + i32(k);
-        let band = clouds.volumes[index].bands[band_index(number, clouds.volumes[index].first_band)];
-        let alive = generations(band, at.later);
-        let age = alive.young + vec2<f32>(0.0, band.spacing);
-        let keys = vec2<u32>(generation_key(number, alive.youngest, seed),
-            generation_key(number, alive.youngest - 1u, seed));
-        let wound = (texels.x * SHEAR * abs(omega)) * age;
-        let wound2 = wound * wound;
-        let leaning2 = lean2 * wound2;
-        let finest2 = max(max(texels.y * texels.y + wound2, across * across + leaning2), vec2<f32>(around * around));
-        let seen2 = max(widest * widest * finest2, wound_texels * wound_texels * max(wound2, leaning2));
-        let level = max(0.5 * log2(max(seen2, vec2<f32>(least * least))), vec2<f32>(0.0));
-        let turns = (at.azimuth - omega * age) / TAU;
-        let rows = (ln_r - band.drift * age) / clouds.volumes[index].period;
-        let layer = height.x / FILAMENT_HEIGHT;
-        let young = vec3<f32>(turns.x, rows.x, layer) + cloud_shift(keys.x);
-        let old = vec3<f32>(turns.y, rows.y, layer) + cloud_shift(keys.y);
-        let s = strength * select(shown.shares.x, shown.shares.y, k == 1u) * alive.weights;
-        sum += dot(s, vec2<f32>(filament_value(young, level.x), filament_value(old, level.y)));
-        let deviation = s * sqrt(vec2<f32>(filament_variance(level.x), filament_variance(level.y)));
-        lost += vec2<f32>(filament_log_mean(clumping * deviation.x), filament_log_mean(deviation.x))
-            + vec2<f32>(filament_log_mean(clumping * deviation.y), filament_log_mean(deviation.y));
-    }
-    return exp(vec2<f32>(clumping * sum - lost.x, clouds.volumes[index].heating * (sum - lost.y)));
-}
-
-// The place of a generation in the block, in periods, from the bits of it.
-fn cloud_shift(key: u32) -> vec3<f32> {
-    return vec3<f32>(vec3<u32>(key & 0xffffu, key >> 16u, mix_bits(key) & 0xffffu)) / 65536.0;
-}
-
-fn level_variances(level: u32) -> vec2<f32> {
-    return clouds.variances[level].xy;
+    let blur = cloud_blur(index, at.r, at.cos, footprint);
+    let density = cloud_factor(index, cloud_place(index, at, carried), blur);
+    let heat = clouds.volumes[index].heat_power * log(max(density, LEAST_FACTOR)) + clouds.volumes[index].heat_log;
+    return vec2<f32>(density, exp(heat));
 }
 
 // A coordinate across the shape that matter keeps while it moves, and its change with cos th.

@@ -74,6 +74,12 @@ fn angular_velocity(a: f32, at: Place, velocity: vec2<f32>) -> f32 {
     return place_omega(a, at) + at.lapse * velocity.x / at.around;
 }
 
+// The change of ln r with time of matter with the velocity (along phi; outwards).
+fn drift_rate(at: Place, velocity: vec2<f32>) -> f32 {
+    let gamma = sqrt((1.0 + velocity.y * velocity.y) / (1.0 - velocity.x * velocity.x));
+    return at.lapse * velocity.y / gamma * sqrt(at.delta / at.sigma) / at.r;
+}
+
 // The velocity of matter at a place, as the ZAMO there measures it.
 fn flow_velocity(c: Constants, at: Place, matter: Matter) -> vec2<f32> {
     let sense = matter.sense;

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// A piece of a ray in one volume: in even layers if it has structure, else in cells. Mirrors `Sum::layers` and
-// `Sum::piece` of src/emit/volumes.rs, but for this: what changes slowly (place, delay, angular velocity, redshift
-// factor g, blur) is found at three places of the piece, between which parabolas tell it; each place of the sum has its
-// density, its filaments and its light for itself.
+// A piece of a ray in one volume: in even layers if it has structure, else in cells. Mirrors `Sum::alone` of
+// src/emit/volumes.rs. What changes slowly (place, motion, redshift factor g) is found at three places of the piece,
+// between which parabolas tell it; each place of the sum has its density, its structure and its luminance for itself,
+// and each block of places its colour.
 
 #import constants
 #import emit/clouds
 #import emit/course
 #import emit/flow
-#import emit/generations
 #import emit/glow
 #import emit/medium
 #import emit/shape
-#import emit/shift
 #import geodesic/geodesic
+#import shared/blackbody
 #import shared/frame
 #import shared/matter
 
@@ -23,13 +22,6 @@ override SHOWS_DEPTH: bool = false;
 override STRUCTURE: bool = false;
 // Whether one volume is all the matter that there is, in a picture with all effects.
 override ALONE: bool = false;
-// Nearer to the axis (sin^2 theta) and to the horizon (1 - r+ / r) parabolas do not tell azimuth and g.
-const ROUND_AXIS: f32 = 0.1;
-const ROUND_HORIZON: f32 = 0.1;
-// Nor do they tell levels of blur, which go as ln of a pixel's width, where that grows by more than this factor along a
-// piece: next to an observer within the matter, where it grows from 0.
-const MOST_WIDENING: f32 = 4.0;
-
 // Whether so much matter is in front that what is behind does not matter.
 fn is_dark() -> bool {
     if SHOWS_DEPTH {
@@ -38,10 +30,12 @@ fn is_dark() -> bool {
     return medium.w < exp(-DARK_PICTURE);
 }
 
-// All that changes slowly: ln r, cos th, azimuth, M after the reference time; the angular velocity times r^(3/2), g.
+// All that changes slowly. `place`: share of the grid's rows, cos th, turns, and ln of the temperature seen, T g, or of
+// g of a power law. `matter`: r; the column of matter of density 1 in the plane per tau, edges apart; and what of the
+// logarithm of the density falls off as the square of a length, but for a disk's height.
 struct Slow {
     place: vec4<f32>,
-    motion: vec2<f32>,
+    matter: vec3<f32>,
 }
 
 // M after the reference time at which light with no delay is seen: that of a ray's begin.
@@ -63,120 +57,141 @@ fn next_step() {
     last_end -= 1.0;
 }
 
+fn is_power_law(matter: Matter) -> bool {
+    return POWER_LAW && (!THERMAL || matter.power_law != 0u);
+}
+
 fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow {
+    let matter = frame.matter[0];
     let exact = quintic_at(course.u, x);
     // None is past infinity, nor within the horizon.
     let u = clamp(exact, 1e-9, (1.0 - HORIZON_ROOM) / c.r_plus);
     let cosine = clamp(quintic_at(course.n_z, x), -1.0, 1.0);
     let du = quintic_slope(course.u, x) / h;
-    let azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
-    var later = 0.0;
-    if DELAY {
-        // The retardation, whose part at the observer is that of all places.
-        later = seen_later - delay_boundary(c, u, du) - cubic_at(course.delay, x) - clock_offset(c, u);
-    }
     let at = place_at(c, u, cosine);
-    let velocity = flow_velocity(c, at, frame.matter[0]);
+    let velocity = flow_velocity(c, at, matter);
     let nu = measured_by(zamo_light(c, at, du), velocity) / c.nu_local;
     // No motion has such a frequency where this fails; NaN fails it as well.
-    let g = select(0.0, ratio / nu, nu > 0.0 && nu < 1e30 && u == exact);
+    let moves = nu > 0.0 && nu < 1e30 && u == exact;
+    let g = select(1.0, ratio / nu, moves);
     let r = 1.0 / u;
-    return Slow(vec4<f32>(log(r), cosine, azimuth, later),
-        vec2<f32>(angular_velocity(c.a, at, velocity) * r * sqrt(r), g));
+    let ln_r = log(r);
+    var row = 0.0;
+    var turns = 0.0;
+    if STRUCTURE {
+        let azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
+        var later = 0.0;
+        if DELAY {
+            // The retardation, whose part at the observer is that of all places.
+            later = seen_later - delay_boundary(c, u, du) - cubic_at(course.delay, x) - clock_offset(c, u);
+        }
+        let carried = vec2<f32>(angular_velocity(c.a, at, velocity), drift_rate(at, velocity));
+        let there = cloud_place(0u, CloudPlace(r, cosine, azimuth, later), carried);
+        turns = there.x;
+        row = there.y;
+    }
+    // d lambda / d tau = Sigma.
+    var column = select(0.0, nu, moves) * (r * r + c.a * c.a * cosine * cosine);
+    var falls = 0.0;
+    if has_shape(matter.shape, SHAPE_DISK) {
+        column *= exp(-matter.slope * (ln_r - log(matter.inner)));
+    } else {
+        let disk_like = has_shape(matter.shape, SHAPE_HALO);
+        let sine = sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0));
+        let out = select((r * sine - matter.radius) / matter.width, r / matter.radius, disk_like);
+        let up = select(r / matter.radius, 1.0, disk_like) * cosine / matter.thickness;
+        falls = 0.5 * (out * out + up * up);
+    }
+    let heat = log(matter.temperature) - matter.temperature_slope * (ln_r - log(matter.reference_radius));
+    let ln_seen = log(g) + select(heat, 0.0, is_power_law(matter));
+    return Slow(vec4<f32>(row, cosine, turns, ln_seen), vec3<f32>(r, column, falls));
 }
 
 // All that changes slowly along a piece, as parabolas: at its begin, and the factors of the share of it and of its
-// square; and the blur.
+// square.
 struct SlowCourse {
     begin: Slow,
     rise: Slow,
     bend: Slow,
-    levels: mat3x4<f32>,
-    lost: mat3x2<f32>,
-    // The generations that show, as bits.
-    shown: u32,
 }
 
 // The parabolas through what is at the begin, in the middle and at the end.
-fn slow_course(slow: array<Slow, 3>, blurs: array<PieceBlur, 3>) -> SlowCourse {
-    // The azimuth has no seam between them.
-    let turns = vec4<f32>(0.0, 0.0, TAU, 0.0);
+fn slow_course(slow: array<Slow, 3>) -> SlowCourse {
     let begin = slow[0];
-    let to_middle = slow[1].place - begin.place;
-    let to_end = slow[2].place - begin.place;
-    let m = Slow(to_middle - turns * round(to_middle.z / TAU), slow[1].motion - begin.motion);
-    let e = Slow(to_end - turns * round(to_end.z / TAU), slow[2].motion - begin.motion);
-    let k = blurs[1].levels - blurs[0].levels;
-    let l = blurs[2].levels - blurs[0].levels;
-    let p = blurs[1].lost - blurs[0].lost;
-    let q = blurs[2].lost - blurs[0].lost;
+    var to_middle = slow[1].place - begin.place;
+    var to_end = slow[2].place - begin.place;
+    // Turns have no seam between them.
+    to_middle.z -= round(to_middle.z);
+    to_end.z -= round(to_end.z - 2.0 * to_middle.z);
+    let m = slow[1].matter - begin.matter;
+    let e = slow[2].matter - begin.matter;
     return SlowCourse(
         begin,
-        Slow(4.0 * m.place - e.place, 4.0 * m.motion - e.motion),
-        Slow(2.0 * e.place - 4.0 * m.place, 2.0 * e.motion - 4.0 * m.motion),
-        mat3x4<f32>(blurs[0].levels, 4.0 * k - l, 2.0 * l - 4.0 * k),
-        mat3x2<f32>(blurs[0].lost, 4.0 * p - q, 2.0 * q - 4.0 * p),
-        blurs[0].shown | blurs[1].shown | blurs[2].shown,
+        Slow(4.0 * to_middle - to_end, 4.0 * m - e),
+        Slow(2.0 * to_end - 4.0 * to_middle, 2.0 * e - 4.0 * m),
     );
 }
 
-// The light and the optical depth, in w, of the length `tau` of a ray at each of four shares of a piece: side by side,
-// so that GPUs wait for all four texels at once.
-fn lights_of(
-    c: Constants,
-    matter: Matter,
-    slow: SlowCourse,
-    piece: PieceClouds,
-    t: vec4<f32>,
-    tau: f32,
-    ratio: f32,
-) -> mat4x4<f32> {
-    let ln_r = slow.begin.place.x + t * (slow.rise.place.x + t * slow.bend.place.x);
+// Four places side by side: optical depths, luminances that leave them were they opaque or, of a power law, that they
+// send, and ln of the temperatures seen.
+struct Places {
+    depths: vec4<f32>,
+    luminances: vec4<f32>,
+    ln_seen: vec4<f32>,
+}
+
+fn faded4(r: vec4<f32>, matter: Matter) -> vec4<f32> {
+    let a = clamp((r / matter.inner - INNER_FADE.x) / (INNER_FADE.y - INNER_FADE.x), vec4<f32>(0.0), vec4<f32>(1.0));
+    let b = clamp((r / matter.outer - OUTER_FADE.x) / (OUTER_FADE.y - OUTER_FADE.x), vec4<f32>(0.0), vec4<f32>(1.0));
+    return a * a * (3.0 - 2.0 * a) * (1.0 - b * b * (3.0 - 2.0 * b));
+}
+
+// The places at four shares of a piece, each as if the length `tau` were as it is there. `blur`: of the structure.
+fn places_at(matter: Matter, slow: SlowCourse, t: vec4<f32>, tau: f32, blur: f32) -> Places {
+    let r = slow.begin.matter.x + t * (slow.rise.matter.x + t * slow.bend.matter.x);
     let cosine = slow.begin.place.y + t * (slow.rise.place.y + t * slow.bend.place.y);
-    let azimuth = slow.begin.place.z + t * (slow.rise.place.z + t * slow.bend.place.z);
-    let later = slow.begin.place.w + t * (slow.rise.place.w + t * slow.bend.place.w);
-    let g = slow.begin.motion.y + t * (slow.rise.motion.y + t * slow.bend.motion.y);
-    let r = exp(ln_r);
-    let even = vec4<f32>(
-        density_at(r.x, cosine.x, azimuth.x, later.x, matter),
-        density_at(r.y, cosine.y, azimuth.y, later.y, matter),
-        density_at(r.z, cosine.z, azimuth.z, later.z, matter),
-        density_at(r.w, cosine.w, azimuth.w, later.w, matter),
-    );
-    let sends = (even >= vec4<f32>(matter.least_density)) & (g > vec4<f32>(0.0));
-    if !any(sends) {
-        return mat4x4<f32>();
+    var ln_seen = slow.begin.place.w + t * (slow.rise.place.w + t * slow.bend.place.w);
+    var column = slow.begin.matter.y + t * (slow.rise.matter.y + t * slow.bend.matter.y);
+    var falls = slow.begin.matter.z + t * (slow.rise.matter.z + t * slow.bend.matter.z);
+    if has_shape(matter.shape, SHAPE_DISK) {
+        let heights = cosine / matter.thickness;
+        falls = 0.5 * heights * heights;
+        column *= faded4(r, matter);
+    } else {
+        column = select(column, vec4<f32>(0.0), r > vec4<f32>(matter.outer));
     }
-    var thicker = vec4<f32>(1.0);
-    var hotter = vec4<f32>(1.0);
+    column = max(column, vec4<f32>(0.0)) * tau * exp(-falls);
     if STRUCTURE {
-        let period = clouds.volumes[0].period;
-        let motion = slow.begin.motion.x + t * (slow.rise.motion.x + t * slow.bend.motion.x);
-        let places = FourPlaces(ln_r, cosine, azimuth, later, motion / (r * sqrt(r)));
-        let layers = vec4<f32>(cloud_height(0u, r.x, cosine.x).x, cloud_height(0u, r.y, cosine.y).x,
-            cloud_height(0u, r.z, cosine.z).x, cloud_height(0u, r.w, cosine.w).x) / FILAMENT_HEIGHT;
-        let sum = clouds.volumes[0].strength * piece_filaments(piece, slow.shown, places, ln_r / period, layers,
-            1.0 / period, slow.levels, t);
-        let lost_density = slow.lost[0].x + t * (slow.lost[1].x + t * slow.lost[2].x);
-        let lost_heat = slow.lost[0].y + t * (slow.lost[1].y + t * slow.lost[2].y);
-        thicker = exp(clouds.volumes[0].clumping * sum - lost_density);
-        hotter = exp(clouds.volumes[0].heating * (sum - lost_heat));
+        let rows = slow.begin.place.x + t * (slow.rise.place.x + t * slow.bend.place.x);
+        let turns = slow.begin.place.z + t * (slow.rise.place.z + t * slow.bend.place.z);
+        let layers = cosine * (clouds.volumes[0].per_thickness / FILAMENT_HEIGHT);
+        let factors = vec4<f32>(
+            cloud_factor(0u, vec3<f32>(turns.x, rows.x, layers.x), blur),
+            cloud_factor(0u, vec3<f32>(turns.y, rows.y, layers.y), blur),
+            cloud_factor(0u, vec3<f32>(turns.z, rows.z, layers.z), blur),
+            cloud_factor(0u, vec3<f32>(turns.w, rows.w, layers.w), blur),
+        );
+        column *= factors;
+        if !is_power_law(matter) {
+            ln_seen += clouds.volumes[0].heat_power * log(max(factors, vec4<f32>(LEAST_FACTOR)))
+                + clouds.volumes[0].heat_log;
+        }
     }
-    let seen = select(vec4<f32>(1.0), g, sends);
-    let density = select(vec4<f32>(0.0), even * thicker, sends);
-    // d lambda / d tau = Sigma.
-    let lengths = tau * (r * r + c.a * c.a * cosine * cosine);
-    return mat4x4<f32>(
-        light_at(matter, density.x, hotter.x, r.x, seen.x, ratio) * lengths.x,
-        light_at(matter, density.y, hotter.y, r.y, seen.y, ratio) * lengths.y,
-        light_at(matter, density.z, hotter.z, r.z, seen.z, ratio) * lengths.z,
-        light_at(matter, density.w, hotter.w, r.w, seen.w, ratio) * lengths.w,
-    );
+    if is_power_law(matter) {
+        let depths = matter.absorption * column * exp((ABSORPTION_INDEX + matter.spectral_index) * ln_seen);
+        let sent = matter.brightness * column * exp((3.0 + matter.spectral_index) * ln_seen);
+        return Places(min(depths, vec4<f32>(LARGEST_COEFFICIENT)), min(sent, vec4<f32>(LARGEST_COEFFICIENT)), ln_seen);
+    }
+    let depths = min(matter.absorption * column, vec4<f32>(LARGEST_COEFFICIENT));
+    return Places(depths, matter.brightness * blackbody_luminances(ln_seen, matter.log_reference), ln_seen);
 }
 
-fn light_at(matter: Matter, density: f32, heat: f32, r: f32, g: f32, ratio: f32) -> vec4<f32> {
-    let found = glow_coefficients(matter, density, heat, r, ratio / g, g, Shift(g, g));
-    return vec4<f32>(found.light, found.absorption);
+// The colour of places of which each sends so much.
+fn colour_of(matter: Matter, ln_seen: vec4<f32>, sent: vec4<f32>, total: f32) -> vec3<f32> {
+    if is_power_law(matter) {
+        return matter.tint;
+    }
+    return blackbody_colour(dot(sent, ln_seen) / max(total, 1e-30));
 }
 
 // Adds a piece between two shares of a step in `count` cells, or so many layers in blocks. `widths`: of a pixel at its
@@ -194,8 +209,7 @@ fn add_alone(
     let u = vec2<f32>(quintic_at(course.u, ends.x), quintic_at(course.u, ends.y));
     let cosines = vec2<f32>(quintic_at(course.n_z, ends.x), quintic_at(course.n_z, ends.y));
     let is_smooth = max(u.x, u.y) * c.r_plus < 1.0 - ROUND_HORIZON
-        && max(cosines.x * cosines.x, cosines.y * cosines.y) < 1.0 - ROUND_AXIS
-        && max(widths.x, widths.y) <= MOST_WIDENING * min(widths.x, widths.y);
+        && max(cosines.x * cosines.x, cosines.y * cosines.y) < 1.0 - ROUND_AXIS;
     // A block is a cell, or four layers. u32 of NaN may be any number.
     let blocks = clamp(u32(round(select(count, count / BLOCK_LAYERS, STRUCTURE))), 1u, u32(MOST_CELLS));
     // Where they are not smooth each block has what changes slowly for itself, at places within it: the last block
@@ -203,11 +217,14 @@ fn add_alone(
     let spans = select(blocks, 1u, is_smooth);
     let margin = select(select(GAUSS_NODES.x, 0.125, STRUCTURE), 0.0, is_smooth);
     let tau = (ends.y - ends.x) / f32(blocks) * h * c.nu_local;
+    var blurs = vec2<f32>(1.0);
+    if STRUCTURE {
+        blurs.x = cloud_blur(0u, 1.0 / u.x, cosines.x, widths.x);
+        blurs.y = cloud_blur(0u, 1.0 / u.y, cosines.y, widths.y);
+    }
     for (var span = 0u; span < spans && !is_dark(); span += 1u) {
         // The begin is as the end of the piece before was, which lies within it where that was not smooth.
         var slow = array<Slow, 3>(Slow(), Slow(), last_slow);
-        var piece: PieceClouds;
-        var blurs = array<PieceBlur, 3>();
         let reuses = is_smooth && abs(ends.x - last_end) < 1e-4;
         for (var i = select(0u, 1u, reuses); i < 3u; i += 1u) {
             let share = (f32(span) + margin + (1.0 - 2.0 * margin) * (0.5 * f32(i))) / f32(spans);
@@ -215,73 +232,61 @@ fn add_alone(
             slow[1] = slow[2];
             slow[2] = slow_at(c, course, ends.x + (ends.y - ends.x) * share, h, ratio);
         }
-        if STRUCTURE {
-            piece = piece_clouds(0u, slow[1].place.x, slow[0].place.w);
-            for (var i = 0u; i < 3u; i += 1u) {
-                // Arrays that are indexed by variables cost GPUs a tenth of the frame's time.
-                var there = slow[0];
-                if i == 1u {
-                    there = slow[1];
-                }
-                if i == 2u {
-                    there = slow[2];
-                }
-                let at = there.place;
-                let share = (f32(span) + margin + (1.0 - 2.0 * margin) * (0.5 * f32(i))) / f32(spans);
-                blurs[0] = blurs[1];
-                blurs[1] = blurs[2];
-                blurs[2] = piece_blur(0u, piece, at.x, at.y, at.w, there.motion.x * exp(-1.5 * at.x),
-                    widths.x + (widths.y - widths.x) * share);
-            }
-        }
         last_slow = slow[2];
         last_end = select(-1e9, ends.y, is_smooth);
-        let along = slow_course(slow, blurs);
+        let along = slow_course(slow);
         let parts = select(1u, blocks, is_smooth);
         if STRUCTURE {
-            for (var layer = 0u; layer < parts && !is_dark(); layer += 1u) {
-                let share = (f32(layer) + vec4<f32>(0.125, 0.375, 0.625, 0.875)) / f32(parts);
+            for (var block = 0u; block < parts && !is_dark(); block += 1u) {
+                let share = (f32(block) + vec4<f32>(0.125, 0.375, 0.625, 0.875)) / f32(parts);
                 let t = (share - margin) / (1.0 - 2.0 * margin);
-                let found = lights_of(c, matter, along, piece, t, 0.25 * tau, ratio);
-                for (var i = 0u; i < 4u; i += 1u) {
-                    let there = found[i];
-                    medium = vec4<f32>(medium.xyz + there.xyz * (own_share(there.w) * medium.w),
-                        medium.w * exp(-there.w));
-                }
+                let middle = (f32(span) * f32(parts) + f32(block) + 0.5) / f32(blocks);
+                add_block(matter, places_at(matter, along, t, 0.25 * tau, blurs.x + (blurs.y - blurs.x) * middle));
             }
         } else {
-            add_cells(c, matter, along, piece, parts, margin, tau, ratio);
+            add_cells(matter, along, parts, margin, tau);
         }
     }
 }
 
+// Adds four even layers.
+fn add_block(matter: Matter, places: Places) {
+    let left = exp(-places.depths);
+    var shares = 1.0 - left;
+    if is_power_law(matter) {
+        shares = vec4<f32>(own_share(places.depths.x), own_share(places.depths.y), own_share(places.depths.z),
+            own_share(places.depths.w));
+    }
+    let second = left.x;
+    let third = second * left.y;
+    let fourth = third * left.z;
+    let sent = shares * vec4<f32>(1.0, second, third, fourth) * places.luminances;
+    let total = sent.x + sent.y + sent.z + sent.w;
+    let colour = colour_of(matter, places.ln_seen, sent, total);
+    medium = vec4<f32>(medium.xyz + colour * (total * medium.w), medium.w * fourth * left.w);
+}
+
 // Adds `count` cells of even matter, of which one of too great an optical depth is cut again.
-fn add_cells(
-    c: Constants,
-    matter: Matter,
-    along: SlowCourse,
-    piece: PieceClouds,
-    count: u32,
-    margin: f32,
-    tau: f32,
-    ratio: f32,
-) {
+fn add_cells(matter: Matter, along: SlowCourse, count: u32, margin: f32, tau: f32) {
     var cell = 0u;
     var cut = 0u;
     var cuts = 1u;
     while cell < count && !is_dark() {
         let share = (f32(cell) + (f32(cut) + GAUSS_NODES) / f32(cuts)) / f32(count);
         let t = (share - margin) / (1.0 - 2.0 * margin);
-        let light = lights_of(c, matter, along, piece, t.xyzz, tau / f32(cuts), ratio);
-        let depths = vec3<f32>(light[0].w, light[1].w, light[2].w);
+        let places = places_at(matter, along, t.xyzz, tau / f32(cuts), 1.0);
+        let depths = places.depths.xyz;
         let depth = dot(GAUSS_WEIGHTS, depths);
         if cuts == 1u && depth > 1.0 {
             cuts = u32(min(ceil(depth), MOST_CUTS));
             continue;
         }
-        let gains = node_gains(depths) * medium.w;
-        let sent = light[0].xyz * gains.x + light[1].xyz * gains.y + light[2].xyz * gains.z;
-        medium = vec4<f32>(medium.xyz + sent, medium.w * exp(-depth));
+        // A blackbody's source is in units of its own opacity.
+        let coefficients = select(depths, vec3<f32>(1.0), is_power_law(matter)) * places.luminances.xyz;
+        let sent = vec4<f32>(coefficients * node_gains(depths), 0.0);
+        let total = sent.x + sent.y + sent.z;
+        let colour = colour_of(matter, places.ln_seen, sent, total);
+        medium = vec4<f32>(medium.xyz + colour * (total * medium.w), medium.w * exp(-depth));
         cut += 1u;
         if cut >= cuts {
             cut = 0u;

@@ -28,11 +28,14 @@ const FINENESS: f32 = 1.7;
 var<private> ray_swept: f32;
 // Whether MANY_RAYS are traced for its pixel.
 var<private> among_many: bool;
+// The width of a pixel where the last part ended, M; negative where that is not known.
+var<private> known_width: f32;
 
 // A ray begins at `observer`, one of `rays` of a pixel.
 fn begin_medium(c: Constants, observer: State, rays: u32) {
     medium = NO_MEDIUM;
     ray_swept = 0.0;
+    known_width = -1.0;
     among_many = rays >= MANY_RAYS;
     if ALONE {
         begin_layers(c, observer);
@@ -65,12 +68,14 @@ fn add_part(
     let turned = abs(end - begin) * min(sqrt(max(c.k, 0.0)), c.scale);
     ray_swept += turned;
     if max(from_state.u, to_state.u) * MARGIN_STEP < outer || is_dark() {
+        known_width = -1.0;
         return;
     }
     // cos th goes as a sine along a ray: between crossings of the plane it is nowhere less than at the nearer end.
     let heights = vec2<f32>(from_state.n.z, to_state.n.z);
     let least = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
     if ALONE && least > frame.matter[0].most_cosine * (1.0 + MARGIN_U) + MARGIN_COS {
+        known_width = -1.0;
         return;
     }
     let course = step_course(c, from_state, to_state, h);
@@ -85,21 +90,27 @@ fn add_part(
     let from_share = select(0.0, enters, u < edge && v > edge);
     let to_share = select(1.0, enters, v < edge && u > edge);
     let quotient = max(v, edge) / max(u, edge);
-    // A piece in layers lies in two bands at most (emit/generations.wgsl).
-    let widest = select(PIECE_LN_R, min(PIECE_LN_R, BANDS_APART), ALONE && STRUCTURE);
-    let wanted = max(abs(log(quotient)) / widest, swept / PIECE_ANGLE);
+    // Steps are as long as a piece may be, give or take a rounding, which is not to make two of one.
+    let wanted = max(abs(log(quotient)) / PIECE_LN_R, swept / PIECE_ANGLE) - PIECE_SLACK;
     // u32 of NaN may be any number.
     let count = clamp(u32(min(ceil(wanted), MOST_PIECES)), 1u, u32(MOST_PIECES));
     var at = from_share;
     var before = vec2<f32>(quintic_at(course.u, first + run * at), quintic_at(course.n_z, first + run * at));
-    var width = width_at(c, observer, course, first + run * at, h, before_swept + turned * at, ratio);
+    // The width of a pixel changes evenly along a part.
+    let last_width = width_at(c, observer, course, first + run, h, before_swept + turned, ratio);
+    if known_width < 0.0 {
+        known_width = width_at(c, observer, course, first, h, before_swept, ratio);
+    }
+    let first_width = known_width;
+    known_width = last_width;
+    var width = first_width + (last_width - first_width) * at;
     for (var k = 1u; k <= count; k += 1u) {
         let even = f32(k) / f32(count);
         let rise = quotient - 1.0;
         let share = select((pow(quotient, even) - 1.0) / rise, even, abs(rise) < 1e-4);
         let next = from_share + (to_share - from_share) * share;
         let last = vec2<f32>(quintic_at(course.u, first + run * next), quintic_at(course.n_z, first + run * next));
-        let next_width = width_at(c, observer, course, first + run * next, h, before_swept + turned * next, ratio);
+        let next_width = first_width + (last_width - first_width) * next;
         let cut = cut_of(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at),
             0.5 * (width + next_width));
         if cut.count > 0.0 {
@@ -167,6 +178,8 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
     var share = vec2<f32>(1.0, 0.0);
     var cells = 0.0;
     var places = 0.0;
+    // The most that some matter of it sends, of what it might.
+    var most = 0.0;
     for (var k = 0u; k < select(not_inlined(frame.matter_count), 1u, ALONE); k += 1u) {
         let matter = frame.matter[k];
         let within = clip(matter, u, cosines);
@@ -178,7 +191,9 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
                 // Matter without structure passes none.
                 if passed > 0.0 {
                     let wanted = cloud_samples(k, passed, 2.0 / (u.x + u.y), width);
-                    places = max(places, wanted * cloud_worth(medium.w, weight_of(u, cosines, swept, matter)));
+                    let weight = weight_of(u, cosines, swept, matter);
+                    most = max(most, weight);
+                    places = max(places, wanted * cloud_worth(medium.w, weight));
                 }
             }
         }
@@ -191,7 +206,9 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
     let blocks = BLOCK_LAYERS * clamp(ceil(wanted * part / BLOCK_LAYERS - BLOCK_ROUNDING), 1.0,
         MOST_CELLS / BLOCK_LAYERS);
     let count = select(clamp(ceil(wanted * part), 1.0, MOST_CELLS), blocks, ALONE && STRUCTURE);
-    return Cut(share, select(0.0, count, part > 0.0), layers);
+    // A stretch that hardly shows is passed over, where the one volume is all that it has.
+    let shows = part > 0.0 && (!(ALONE && STRUCTURE) || most * medium.w > LEAST_SEEN);
+    return Cut(share, select(0.0, count, shows), layers);
 }
 
 // How much of the light it may send that a stretch sends, at most, if it were even.
@@ -199,7 +216,10 @@ fn weight_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f3
     let r = 2.0 / (u.x + u.y);
     let near = density_at(1.0 / u.x, cosines.x, 0.0, 0.0, matter);
     let far = density_at(1.0 / u.y, cosines.y, 0.0, 0.0, matter);
-    let most = max(max(near, far), density_at(r, 0.5 * (cosines.x + cosines.y), 0.0, 0.0, matter));
+    // All shapes but jets are densest nearest to the plane.
+    let nearest = clamp(0.0, min(cosines.x, cosines.y), max(cosines.x, cosines.y));
+    let between = select(nearest, 0.5 * (cosines.x + cosines.y), has_shape(matter.shape, SHAPE_JET));
+    let most = max(max(near, far), density_at(r, between, 0.0, 0.0, matter));
     if matter.power_law != 0u {
         return min(most, 1.0);
     }
@@ -323,7 +343,8 @@ fn coefficients_at(
             var structure = vec2<f32>(1.0);
             if STRUCTURE && k < MOST_VOLUMES {
                 let there = CloudPlace(r, cosine, azimuth, later);
-                structure = cloud_pattern(k, there, angular_velocity(c.a, at, velocity), Blur(width, 0.0));
+                let carried = vec2<f32>(angular_velocity(c.a, at, velocity), drift_rate(at, velocity));
+                structure = cloud_pattern(k, there, carried, width);
             }
             // No motion has such a frequency where this fails; NaN fails it as well.
             if nu > 0.0 && nu < 1e30 {

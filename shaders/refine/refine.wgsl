@@ -22,14 +22,22 @@
 #requires fn with_sky(record: Record) -> Record
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
-// The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
+// The structure of matter with depth: emit/clouds.wgsl.
 // No uniform: lavapipe crashes with a fourth (shared/not_inlined.wgsl).
 @group(0) @binding(10) var<storage, read> clouds: Clouds;
-@group(0) @binding(11) var filaments: texture_3d<f32>;
-@group(0) @binding(12) var filament_sampler: sampler;
+@group(0) @binding(11) var baked_0: texture_3d<f32>;
+@group(0) @binding(12) var baked_1: texture_3d<f32>;
+@group(0) @binding(13) var baked_2: texture_3d<f32>;
+@group(0) @binding(14) var baked_3: texture_3d<f32>;
+@group(0) @binding(15) var baked_sampler: sampler;
 
-fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
-    return textureSampleLevel(filaments, filament_sampler, place, level).x;
+fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 {
+    switch index {
+        case 1u: { return textureSampleLevel(baked_1, baked_sampler, place, level).x; }
+        case 2u: { return textureSampleLevel(baked_2, baked_sampler, place, level).x; }
+        case 3u: { return textureSampleLevel(baked_3, baked_sampler, place, level).x; }
+        default: { return textureSampleLevel(baked_0, baked_sampler, place, level).x; }
+    }
 }
 
 // The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve.

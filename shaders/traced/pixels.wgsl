@@ -23,10 +23,13 @@
 @group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
 // The tables of light, as shade/shade.wgsl has them: matter with depth reads blackbodies there.
 @group(0) @binding(5) var light_tables: texture_2d<f32>;
-// The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
+// The structure of matter with depth: emit/clouds.wgsl.
 @group(0) @binding(6) var<storage, read> clouds: Clouds;
-@group(0) @binding(7) var filaments: texture_3d<f32>;
-@group(0) @binding(8) var filament_sampler: sampler;
+@group(0) @binding(7) var baked_0: texture_3d<f32>;
+@group(0) @binding(8) var baked_1: texture_3d<f32>;
+@group(0) @binding(10) var baked_2: texture_3d<f32>;
+@group(0) @binding(11) var baked_3: texture_3d<f32>;
+@group(0) @binding(12) var baked_sampler: sampler;
 
 // Whether shading needs to know where on the disk a crossing is.
 override AZIMUTH: bool = true;
@@ -44,8 +47,13 @@ fn light_table(i: u32) -> vec4<f32> {
     return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
 }
 
-fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
-    return textureSampleLevel(filaments, filament_sampler, place, level).x;
+fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 {
+    switch index {
+        case 1u: { return textureSampleLevel(baked_1, baked_sampler, place, level).x; }
+        case 2u: { return textureSampleLevel(baked_2, baked_sampler, place, level).x; }
+        case 3u: { return textureSampleLevel(baked_3, baked_sampler, place, level).x; }
+        default: { return textureSampleLevel(baked_0, baked_sampler, place, level).x; }
+    }
 }
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {

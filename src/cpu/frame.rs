@@ -49,20 +49,20 @@ impl<'a> Frame<'a> {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let observer = &lens.observer.frame;
+        let structure = cache.structure(scene, lens)?;
         let tables = cache.tables(scene, observer, scene.lensing(observer, pixels, KerrThreshold::CPU))?;
         let source = |recorder| match tables {
             Some(tables) => RecordSource::LensLookup(LensLookup::new(recorder, tables)),
             None => RecordSource::Traced(recorder),
         };
-        scene.emitters().volumes.prepare()?;
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };
         Ok(Self {
             lens,
-            source: source(Recorder::new(scene, lens)),
+            source: source(Recorder::new(scene, lens, &structure)),
             half: scene.half_resolution(),
             refiner: scene
                 .refines(request.transparent)
-                .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens)))),
+                .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens, &structure)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,

@@ -87,7 +87,7 @@ mod tests {
     /// The share of a frame's rays that matter is summed along: of blocks, and of pixels that they do not tell.
     fn share_summed(scene: &Scene, [full_width, full_height]: [u32; 2]) -> [f64; 2] {
         let lens = scene.lens(&Region { full_width, full_height, x: 0, y: 0 }).expect("a lens");
-        let recorder = Recorder::new(scene, &lens);
+        let recorder = Recorder::new(scene, &lens, &[]);
         let evenness = scene.half_resolution().expect("half resolution");
         let blocks = Blocks::new(&recorder, evenness, [0, 0], [full_width, full_height], [0.5; 2]).expect("blocks");
         let own = (0..full_width * full_height).into_par_iter().filter(|i| {

@@ -281,7 +281,7 @@ mod tests {
 
     /// Traces as exactly as it can.
     fn exact<'a>(scene: &Scene, lens: &'a Lens) -> Recorder<'a> {
-        let mut recorder = Recorder::new(scene, lens);
+        let mut recorder = Recorder::new(scene, lens, &[]);
         recorder.settings = Settings { step: 0.02, max_steps: 100_000, ..recorder.settings };
         recorder
     }
@@ -363,7 +363,7 @@ mod tests {
         let lensing = scene.lensing(frame, 1, KerrThreshold::CPU);
         assert_ne!(lensing, Lensing::Traced);
         let tables = cache.tables(scene, frame, lensing).unwrap().unwrap();
-        let lookup = LensLookup::new(Recorder::new(scene, &lens), tables);
+        let lookup = LensLookup::new(Recorder::new(scene, &lens, &[]), tables);
         let truth = exact(scene, &lens);
         let mut sequence = Sequence(11);
         let mut errors = Errors { pixels: count, ..Errors::default() };

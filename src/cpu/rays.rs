@@ -14,7 +14,7 @@ pub fn trace_rays(scene: &Scene, rays: &[Ray], hits: &mut [Hit]) {
 
 /// The matter along `rays`, in parallel on the current pool. Errors: OUT_OF_MEMORY.
 pub fn transfer_rays(scene: &Scene, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
-    let (emitters, settings) = transfer_setup(scene)?;
-    rays.par_iter().zip(found).for_each(|(ray, found)| *found = transfer_ray(scene, &settings, &emitters, ray));
+    let setup = transfer_setup(scene, rays)?;
+    rays.par_iter().zip(found).for_each(|(ray, found)| *found = transfer_ray(scene, &setup, ray));
     Ok(())
 }

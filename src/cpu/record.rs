@@ -2,6 +2,7 @@
 //! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
 use crate::emit::along::{Limit, MediaAlong};
+use crate::emit::baked::Baked;
 use crate::emit::medium::{Media, Medium};
 use crate::emit::volumes::Seen;
 use crate::emit::{Crossing, EmissionPoint, Emitters};
@@ -15,6 +16,7 @@ use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, po
 use crate::scene::refine::{Edge, is_steep, turn_of, turning_edge};
 use crate::scene::{Occluder, Scene};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Traces the records of a frame.
 pub struct Recorder<'a> {
@@ -38,8 +40,10 @@ pub struct Neighbours<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
-        let emitters = scene.emitters();
+    /// `structure`: that of the volumes ([`super::tables::LensCache::structure`]).
+    pub fn new(scene: &Scene, lens: &'a Lens, structure: &[Option<Arc<Baked>>]) -> Self {
+        let mut emitters = scene.emitters();
+        emitters.volumes.baked = structure.to_vec();
         Self {
             lens,
             settings: scene.pixel_settings(),
@@ -54,8 +58,8 @@ impl<'a> Recorder<'a> {
 
     /// A recorder that gives crossings of the whole plane, unless nothing shines in it, and goes on behind those that
     /// would hide the rest.
-    pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
-        let mut recorder = Self::new(scene, lens);
+    pub fn whole_plane(scene: &Scene, lens: &'a Lens, structure: &[Option<Arc<Baked>>]) -> Self {
+        let mut recorder = Self::new(scene, lens, structure);
         recorder.settings.opaque_u = None;
         recorder.plane_u = recorder.plane_u.map(|_| [0.0, f64::INFINITY]);
         recorder.disk_u = recorder.plane_u;

@@ -245,7 +245,7 @@ mod tests {
         let mut cache = LensCache::default();
         let lensing = scene.lensing(&observer, 1 << 20, KerrThreshold::CPU);
         let tables = cache.tables(scene, &observer, lensing).expect("tables").expect("a scene that is looked up");
-        let lookup = LensLookup::new(Recorder::new(scene, &lens), tables);
+        let lookup = LensLookup::new(Recorder::new(scene, &lens, &[]), tables);
         let (mut record, mut counts) = (Record::captured(), [0; 2]);
         for (x, y) in (0..region.full_height).flat_map(|y| (0..region.full_width).map(move |x| (x, y))) {
             lookup.record(f64::from(x) + 0.5, f64::from(y) + 0.5, &mut record);

@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The tables of observers' lenses (`physics::lens`), built in parallel and kept while what they depend on stays, of
-//! several observers by turns. Knows no pixels.
+//! several observers by turns; and the structure of matter with depth of the last frame. Knows no pixels.
 
 use crate::allocate::{filled, with_room};
+use crate::emit::baked::{Baked, BakedCache};
 use crate::error::Result;
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::physics::lens::{LENS, SchwarzschildLens};
 use crate::physics::observer::LocalFrame;
 use crate::recent::Recent;
+use crate::scene::observer::Lens;
 use crate::scene::refine::reached_u;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The tables of the last frames that looked rays up in some.
 #[derive(Default)]
 pub struct LensCache {
     schwarzschild: Recent<(f64, bool, bool), SchwarzschildLens>,
     kerr: Recent<KerrKey, KerrLens>,
+    structure: BakedCache,
     /// Tables made so far.
     pub made: u64,
 }
@@ -52,6 +56,13 @@ impl LensCache {
                 self.schwarzschild(frame, scene.emitters().needs().delays)?.map(Tables::Schwarzschild)
             }
         })
+    }
+
+    /// The structure of each of the scene's volumes as its camera sees it, made on the current pool unless it is there
+    /// from the frame before. Errors: OUT_OF_MEMORY.
+    pub fn structure(&mut self, scene: &Scene, lens: &Lens) -> Result<Vec<Option<Arc<Baked>>>> {
+        let volumes = scene.shown_volumes();
+        self.structure.prepare(&volumes.volumes, scene.hole.spin, lens.observer.frame.r, lens.least_pixel_angle())
     }
 
     fn schwarzschild(&mut self, frame: &LocalFrame, with_delay: bool) -> Result<Option<&SchwarzschildLens>> {

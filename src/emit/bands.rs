@@ -18,9 +18,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 /// The width of a band in ln r, and the share of it over which it blends with its neighbours.
 pub(crate) const BAND: f64 = 0.3;
 pub(crate) const BAND_FADE: f64 = 0.35;
-/// A stretch no wider in ln r shows the two bands that meet nearest to its middle, and no third.
-pub(crate) const BANDS_APART: f64 = BAND * (1.0 - BAND_FADE);
-/// The time in which a generation fades in, and the one before it out, in times from birth to birth.
+/// `Life::fade` of the disk's turbulence.
 pub(crate) const GENERATION_FADE: f64 = 0.35;
 /// Bands that an emitter has at most: from r = 1 to its largest radius, and one more at either end for places beside
 /// it.
@@ -37,16 +35,18 @@ pub struct When {
     pub delayed: bool,
 }
 
-/// How long the generations of a band live, M, and how far in ln r they are carried per M.
+/// How long the generations of a band live, M, how far in ln r they are carried per M, and the time in which one fades
+/// in, and the one before it out, in times from birth to birth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Life {
     pub time: f64,
     pub drift: f64,
+    pub fade: f64,
 }
 
 /// The generations of a band as a frame shows them: small numbers that f32 can hold, however large the scene's time is.
 /// Times in M.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Band {
     /// The age of the youngest generation at the reference time.
     pub age: f64,
@@ -56,10 +56,12 @@ pub struct Band {
     pub generation: u32,
     /// The change of ln r that carries the pattern, per M.
     pub drift: f64,
+    /// `Life::fade`.
+    pub fade: f64,
 }
 
 /// The bands of a frame's emitter.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bands {
     pub seed: u32,
     /// The number of the first band, band 0 beginning at r = 1, and how many there are.
@@ -106,13 +108,14 @@ impl Bands {
         let (first, count) = (first - 1, ((last - first + 3).max(1) as usize).min(MOST_BANDS));
         let mut bands = [Band::default(); MOST_BANDS];
         for (band, number) in bands.iter_mut().zip(first..).take(count) {
-            let Life { time: life, drift } = life(BAND * (f64::from(number) + 0.5));
-            let spacing = life / (1.0 + GENERATION_FADE);
+            let Life { time: life, drift, fade } = life(BAND * (f64::from(number) + 0.5));
+            let spacing = life / (1.0 + fade);
             // Bands do not all renew themselves at once.
             let begin = f64::from(mix(seed.wrapping_add(mix(number as u32)))) / 4_294_967_296.0;
             let age = (time + begin * spacing).rem_euclid(spacing);
             let births = ((time - age) / spacing + begin).round();
-            *band = Band { age, spacing, generation: births.rem_euclid(4_294_967_296.0) as u32, drift };
+            let generation = births.rem_euclid(4_294_967_296.0) as u32;
+            *band = Band { age, spacing, generation, drift, fade };
         }
         Self { seed, first, count, bands }
     }
@@ -151,7 +154,7 @@ impl Band {
         let births = (since / self.spacing).floor();
         let young = since - births * self.spacing;
         let youngest = self.generation.wrapping_add(births as i32 as u32);
-        let grown = young / (GENERATION_FADE * self.spacing);
+        let grown = young / (self.fade * self.spacing);
         if grown < 1.0 {
             let (new, old) = (FRAC_PI_2 * grown).sin_cos();
             Generations { young, youngest, count: 2, weights: [new, old] }
@@ -185,7 +188,7 @@ mod tests {
     use super::*;
 
     fn bands(time: f64, seed: u64) -> Bands {
-        Bands::new([0.5, 3.5], seed, time, |ln_r| Life { time: (1.5 * ln_r).exp(), drift: 0.25 })
+        Bands::new([0.5, 3.5], seed, time, |ln_r| Life { time: (1.5 * ln_r).exp(), drift: 0.25, fade: GENERATION_FADE })
     }
 
     /// The variance of a sum of independent patterns, and so of one that fades into another.

@@ -220,6 +220,64 @@ impl Filaments {
         f64::from(value / STEPS) * left
     }
 
+    /// Adds `scale` g to each of a line of texels around the axis, of which the block's periods have so many; the place
+    /// is that of the line's begin in azimuth, and of its middle in ln r and height, 0 or more; of a level, which need
+    /// not be a whole number, but has no more texels in azimuth than the line.
+    pub fn add_line(&self, line: &mut [f32], scale: f32, place: [f32; 3], level: f32) {
+        let [level, left] = faded(level.into());
+        let whole = level as usize;
+        let share = (level - whole as f64) as f32;
+        let scale = scale * left as f32 / STEPS;
+        self.add_level(line, scale * (1.0 - share), place, whole);
+        if share > 0.0 && whole < FILAMENT_LAST {
+            self.add_level(line, scale * share, place, whole + 1);
+        }
+    }
+
+    fn add_level(&self, line: &mut [f32], scale: f32, [turn, row, layer]: [f32; 3], level: usize) {
+        let Level { begin, sides: [columns, rows, layers] } = self.levels[level];
+        let between = |place: f32, side: usize| {
+            // Two periods more: no place is negative then. Sides are powers of two.
+            let at = place * side as f32 - 0.5 + (2 * side) as f32;
+            let whole = at as usize;
+            ([whole & (side - 1), (whole + 1) & (side - 1)], at - whole as f32)
+        };
+        let ([above, below], down) = between(row, rows);
+        let ([near, far], up) = between(layer, layers);
+        let mut around = [0.0_f32; FILAMENT_SIDES[0]];
+        for (z, y, weight) in [
+            (near, above, (1.0 - up) * (1.0 - down)),
+            (near, below, (1.0 - up) * down),
+            (far, above, up * (1.0 - down)),
+            (far, below, up * down),
+        ] {
+            let begin = begin + (z * rows + y) * columns;
+            let weight = weight * scale;
+            for (sum, g) in around.iter_mut().zip(&self.texels[begin..begin + columns]) {
+                *sum += weight * f32::from(*g);
+            }
+        }
+        // Texels of the line are `step` of the level's apart.
+        let step = columns as f32 / line.len() as f32;
+        let first = turn * columns as f32 + 0.5 * step - 0.5 + (2 * columns) as f32;
+        let turned = |i: usize| around[i & (columns - 1)];
+        if columns == line.len() {
+            let whole = first as usize;
+            let right = first - whole as f32;
+            for (i, texel) in line.iter_mut().enumerate() {
+                let a = turned(whole + i);
+                *texel += a + (turned(whole + i + 1) - a) * right;
+            }
+            return;
+        }
+        for (i, texel) in line.iter_mut().enumerate() {
+            let at = first + step * i as f32;
+            let whole = at as usize;
+            let a = turned(whole);
+            *texel += a + (turned(whole + 1) - a) * (at - whole as f32);
+        }
+    }
+
     /// Between texels of a level, around all sides.
     fn trilinear(&self, level: &Level, place: [f64; 3]) -> f32 {
         let between = |k: usize| {

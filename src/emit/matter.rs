@@ -2,12 +2,13 @@
 //! Volumes and hot spots as a frame shows them: their settings with all that depends on the hole, on time and on how
 //! exactly they are summed. `volumes` sums them. Knows no ray and no tracer.
 
+use super::baking::BakeKey;
 use super::bands::When;
 use super::clouds::Clouds;
 use super::glow::Glow;
 use super::hot_spot::HotSpot;
 use super::shape::{Cloud, Reach, Stretch, gaussian};
-use super::volume::{FlowLaw, Volume};
+use super::volume::{FlowLaw, Shape, Volume};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion};
 use crate::physics::geodesic::wrap_angle;
@@ -124,12 +125,21 @@ impl VolumeMatter {
         })
     }
 
+    /// The key of its structure about a hole of spin `spin`, as far as it is seen from `r` by pixels of an angle of
+    /// `pixel_angle`; 0: all of it. `None`: it is even.
+    pub fn bake_key(&self, spin: f64, r: f64, pixel_angle: f64) -> Option<BakeKey> {
+        let (clouds, cloud, flow) = (self.clouds?, self.cloud, self.flow);
+        Some(BakeKey { clouds, cloud, flow, spin, finest: clouds.finest_seen(r, pixel_angle) })
+    }
+
     /// How much of the light it may send that a stretch sends, at most, if it were even: of a blackbody that goes with
     /// the optical depth, of a power law with the density.
     pub(crate) fn weight(&self, stretch: &Stretch) -> f64 {
-        let ([u, v], [c, d], [r, cos]) = (stretch.u, stretch.cos, stretch.middle());
+        let ([u, v], [c, d], [r, middle]) = (stretch.u, stretch.cos, stretch.middle());
         let density = |r: f64, cos: f64| self.cloud.density(r, cos);
-        let most = density(1.0 / u, c).max(density(1.0 / v, d)).max(density(r, cos));
+        // All shapes but jets are densest nearest to the plane.
+        let between = if self.cloud.shape == Shape::Jet { middle } else { 0.0_f64.clamp(c.min(d), c.max(d)) };
+        let most = density(1.0 / u, c).max(density(1.0 / v, d)).max(density(r, between));
         match self.glow.power_law {
             true => most.min(1.0),
             false => 1.0 - (-CLUMPED * self.glow.absorption * most * stretch.length()).exp(),

@@ -15,7 +15,7 @@ pub const WIDEST: f64 = 0.35;
 pub const OPPOSITE: f64 = 0.7;
 
 /// A shape with its radii.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cloud {
     pub shape: Shape,
     pub inner: f64,
@@ -137,6 +137,11 @@ impl Cloud {
             Shape::Disk | Shape::Torus | Shape::Halo => [cos / thickness, 1.0 / thickness],
             Shape::Jet => [(cos.abs() - wall(r)) / thickness + OPPOSITE.copysign(cos), 1.0 / thickness],
         }
+    }
+
+    /// cos th in the middle of the shape at r: on the plane, or on the wall of the jet above it.
+    pub fn middle_cos(&self, r: f64) -> f64 {
+        if self.shape == Shape::Jet { jet_wall(r, self.opening, self.radius) } else { 0.0 }
     }
 
     /// The radius at which the temperature is the stated one.

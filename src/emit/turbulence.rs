@@ -11,7 +11,7 @@
 //! everywhere and at any time; its distribution is about log-normal, as is that of the light of accreting black holes
 //! (Uttley, McHardy & Vaughan 2005).
 
-use super::bands::{Bands, Life, Shown, When};
+use super::bands::{Bands, GENERATION_FADE, Life, Shown, When};
 use super::crossing::EmissionPoint;
 use super::disk::Disk;
 use super::streaks::{STREAK_COLUMNS, STREAK_PERIOD, STREAK_ROWS, Streaks};
@@ -54,7 +54,11 @@ impl Turbulence {
         let fades_inside = disk.plunges.then(|| isco(matter_spin).ln());
         let innermost = fades_inside.map_or(f64::NEG_INFINITY, |ln_r| ln_r - PLUNGE_FADE);
         let [outer, inner] = u.map(|u| (-u.ln()).max(innermost));
-        let life = |ln_r: f64| Life { time: TAU * ((1.5 * ln_r).exp() + matter_spin) * LIFETIME, drift: 0.0 };
+        let life = |ln_r: f64| Life {
+            time: TAU * ((1.5 * ln_r).exp() + matter_spin) * LIFETIME,
+            drift: 0.0,
+            fade: GENERATION_FADE,
+        };
         Some(Self {
             strength: disk.turbulence,
             reference_delay: when.reference_delay,

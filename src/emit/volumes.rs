@@ -10,13 +10,13 @@
 //! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel
 //! lets it be, are cut into even layers instead, the fewer the less light they send.
 
-use super::bands::BANDS_APART;
+use super::baked::Baked;
 use super::bands::When;
-use super::clouds::{Blur, CloudPlace, Structure, bend, footprint, worth};
+use super::clouds::{Blur, Carried, CloudPlace, Structure, bend, footprint, worth};
 use super::effects::Effects;
-use super::filaments::Filaments;
 use super::glow::{Coefficients, Glow};
 use super::hot_spot::HotSpot;
+use super::layers::{BLOCK_LAYERS, BLOCK_ROUNDING, LEAST_SEEN, Layers};
 use super::matter::{Accuracy, BENDS, SpotMatter, VolumeMatter};
 use super::medium::{GAUSS_NODES, GAUSS_WEIGHTS, Medium};
 use super::shape::{Reach, Stretch};
@@ -26,10 +26,14 @@ use crate::physics::flow::{Place, Velocity, ZamoLight};
 use crate::physics::geodesic::{Constants, State};
 use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
+use std::sync::Arc;
 
 /// The greatest changes over a piece: of ln r, and of the angle about the hole, rad.
-pub(crate) const PIECE_LN_R: f64 = 0.25;
+pub(crate) const PIECE_LN_R: f64 = 0.27;
 pub(crate) const PIECE_ANGLE: f64 = 0.25;
+/// Steps are as long as a piece may be, give or take a rounding, which is not to make two of one: pieces may be longer
+/// by that share of one.
+pub(crate) const PIECE_SLACK: f64 = 0.02;
 /// The most pieces of a part, cells of a piece, and cells that one of too great an optical depth is cut into.
 pub(crate) const MOST_PIECES: f64 = 96.0;
 pub(crate) const MOST_CELLS: f64 = 256.0;
@@ -44,10 +48,6 @@ pub(crate) const MANY_RAYS: u32 = 16;
 pub(crate) const MANY_SHARE: f64 = 0.7;
 /// Layers for each cell of even matter.
 pub(crate) const LAYERS: f64 = 2.0;
-/// Layers of a volume that is alone come in blocks of so many, which GPUs sum side by side. Rounding takes so much less
-/// than all of a block that has begun.
-pub(crate) const BLOCK_LAYERS: f64 = 4.0;
-pub(crate) const BLOCK_ROUNDING: f64 = 0.375;
 /// The most bends between two places: those of all volumes.
 const MOST_BENDS: usize = BENDS * Volume::MOST;
 
@@ -106,6 +106,8 @@ pub struct Volumes {
     pub volumes: Vec<VolumeMatter>,
     /// [`HotSpot::MOST`] at most.
     pub hot_spots: Vec<SpotMatter>,
+    /// The structure of each volume (`BakedCache::prepare`); without, or where it is `None`, volumes are even.
+    pub baked: Vec<Option<Arc<Baked>>>,
     effects: Effects,
     pub when: When,
     accuracy: Accuracy,
@@ -137,6 +139,8 @@ struct Cut {
     /// The number of cells of even matter that the whole of it wants, and that of places that structure wants.
     cells: f64,
     places: f64,
+    /// The most that matter of it with structure sends, of what it might.
+    weight: f64,
 }
 
 impl Cut {
@@ -144,7 +148,12 @@ impl Cut {
     fn with(self, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.share, other.share);
         let share = [a.min(c), b.max(d)];
-        Self { share, cells: self.cells.max(other.cells), places: self.places.max(other.places) }
+        Self {
+            share,
+            cells: self.cells.max(other.cells),
+            places: self.places.max(other.places),
+            weight: self.weight.max(other.weight),
+        }
     }
 }
 
@@ -160,6 +169,10 @@ struct Sum<'a, 'b> {
     volumes: &'a Volumes,
     part: &'a Part<'b>,
     seen: &'a Seen,
+    /// The width of a pixel at the ends of the part, M, which changes evenly between; 0 without structure.
+    footprints: [f64; 2],
+    /// How a volume with structure is summed that is alone.
+    alone: Option<Layers<'a, 'b>>,
 }
 
 impl Volumes {
@@ -175,6 +188,7 @@ impl Volumes {
         Self {
             volumes: volumes.iter().filter_map(matter).take(Volume::MOST).collect(),
             hot_spots: hot_spots.iter().take(HotSpot::MOST).map(|s| SpotMatter::new(s, spin, &when)).collect(),
+            baked: Vec::new(),
             effects,
             when,
             accuracy,
@@ -209,9 +223,15 @@ impl Volumes {
         self.is_alone() && self.has_structure()
     }
 
-    /// Makes the structure of the matter, if there is any, so that `along` has it. Errors: OUT_OF_MEMORY.
-    pub fn prepare(&self) -> Result<()> {
-        if self.has_structure() { Filaments::shared().map(|_| ()) } else { Ok(()) }
+    /// Gives the matter its structure, about a hole of spin `spin`, for few rays (`Baked::asked`). Errors:
+    /// OUT_OF_MEMORY.
+    pub fn ask_structure(&mut self, spin: f64) -> Result<()> {
+        let of = |volume: &VolumeMatter| {
+            let baked = |key| Baked::asked(key).map(Arc::new);
+            volume.bake_key(spin, 1.0, 0.0).map(baked).transpose()
+        };
+        self.baked = self.volumes.iter().map(of).collect::<Result<_>>()?;
+        Ok(())
     }
 
     fn reaches(&self) -> impl Iterator<Item = &Reach> {
@@ -229,12 +249,21 @@ impl Volumes {
         if part.innermost_end() * MARGIN_STEP < outer || medium.depth > self.accuracy.dark {
             return;
         }
-        let sum = Sum { volumes: self, part, seen };
+        let alone = match (&self.volumes[..], self.is_alone_in_layers()) {
+            ([volume], true) => {
+                let baked = self.baked.first().and_then(Option::as_deref);
+                Layers::new(volume, baked, &self.when, part, seen.frequency_ratio)
+            }
+            _ => None,
+        };
+        let footprints = match seen.pixel_angle > 0.0 && self.has_structure() {
+            true => [0.0, 1.0].map(|x| seen.after(part, x).footprint(part.constants, part.observer, &part.at(x))),
+            false => [0.0; 2],
+        };
+        let mut sum = Sum { volumes: self, part, seen, footprints, alone };
         let course = part.course();
         let [first, last] = [0.0, 1.0].map(|x| course.at(x)[0]);
-        // GPUs have the structure of two bands at hand for a piece (shaders/emit/generations.wgsl).
-        let widest = if self.is_alone_in_layers() { PIECE_LN_R.min(BANDS_APART) } else { PIECE_LN_R };
-        let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U), widest);
+        let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U));
         let begin = pieces.border(0);
         let mut before = sum.border(begin, course.at(begin));
         for k in 1..=pieces.count {
@@ -269,14 +298,17 @@ impl Volumes {
     fn cut(&self, stretch: &Stretch, passed: &Texels, footprint: f64, through: f64) -> Option<Cut> {
         let of_volume = |(v, passed): (&VolumeMatter, &f64)| {
             let share = clip(&v.reach, stretch)?;
-            let clouds = v.clouds.as_ref().map_or(0.0, |clouds| {
-                let places = clouds.samples(&v.cloud, *passed, stretch.middle()[0], footprint);
-                places * if self.accuracy.layers { worth(through, v.weight(stretch)) } else { 1.0 }
+            let (places, weight) = v.clouds.as_ref().map_or((0.0, 0.0), |clouds| {
+                let (places, weight) =
+                    (clouds.samples(&v.cloud, *passed, stretch.middle()[0], footprint), v.weight(stretch));
+                (places * if self.accuracy.layers { worth(through, weight) } else { 1.0 }, weight)
             });
-            Some(Cut { share, cells: v.cells(stretch), places: clouds })
+            Some(Cut { share, cells: v.cells(stretch), places, weight })
         };
-        let of_spot =
-            |s: &SpotMatter| Some(Cut { share: clip(&s.reach, stretch)?, cells: s.cells(stretch), places: 0.0 });
+        let of_spot = |s: &SpotMatter| {
+            let (share, cells) = (clip(&s.reach, stretch)?, s.cells(stretch));
+            Some(Cut { share, cells, places: 0.0, weight: 0.0 })
+        };
         let all =
             self.volumes.iter().zip(passed).filter_map(of_volume).chain(self.hot_spots.iter().filter_map(of_spot));
         all.reduce(Cut::with)
@@ -321,18 +353,19 @@ impl Volumes {
                 sum.add(glow.coefficients(density, heat, r, nu, g, shift));
             }
         };
-        for (volume, blur) in self.volumes.iter().zip(blurs) {
+        for (index, (volume, blur)) in self.volumes.iter().zip(blurs).enumerate() {
             let even = volume.cloud.density(r, cos);
             if even < volume.least {
                 continue;
             }
             let (at, light) = measure();
             let velocity = volume.flow.velocity(c.a, &at);
-            let structure = match (volume.clouds, Filaments::shared()) {
-                (Some(clouds), Ok(filaments)) => {
+            let baked = self.baked.get(index).and_then(Option::as_ref);
+            let structure = match (&volume.clouds, baked) {
+                (Some(clouds), Some(baked)) => {
                     let (azimuth, later) = moment();
-                    let omega = velocity.angular_velocity(c.a, &at);
-                    clouds.pattern(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, *blur)
+                    let at_place = CloudPlace { r, cos, azimuth, later };
+                    baked.pattern((clouds, &volume.cloud), &at_place, Carried::new(velocity, c.a, &at), *blur)
                 }
                 _ => Structure::NONE,
             };
@@ -371,17 +404,12 @@ fn course_reaches(course: &PartCourse, [mut low, mut high]: [f64; 2], u: f64) ->
 impl Sum<'_, '_> {
     /// `at`: (1/r, cos th) there.
     fn border(&self, share: f64, at: [f64; 2]) -> Border {
-        let footprint = if self.seen.pixel_angle > 0.0 && self.volumes.has_structure() {
-            let seen = self.seen.after(self.part, share);
-            seen.footprint(self.part.constants, self.part.observer, &self.part.at(share))
-        } else {
-            0.0
-        };
-        Border { share, at, footprint }
+        let [first, last] = self.footprints;
+        Border { share, at, footprint: first + (last - first) * share }
     }
 
     /// Adds the stretch between two places of the part.
-    fn stretch(&self, [from, to]: [&Border; 2], fineness: f64, medium: &mut Medium) {
+    fn stretch(&mut self, [from, to]: [&Border; 2], fineness: f64, medium: &mut Medium) {
         let ([u, c], [v, d], run) = (from.at, to.at, to.share - from.share);
         let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * run };
         let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
@@ -407,8 +435,19 @@ impl Sum<'_, '_> {
         };
         // Layers that are wider than structure is are so because it matters little there.
         let apart = |passed: &f64| if layers { 0.0 } else { passed * (high - low) / (3.0 * count) };
-        let grain = Grain { footprints: [width(low), width(high)], spacing: passed.iter().map(apart).collect() };
         let shares = [low, high].map(|share| from.share + run * share);
+        if let Some(alone) = &mut self.alone {
+            if cut.weight * medium.through <= LEAST_SEEN {
+                return;
+            }
+            let ends = [low, high].map(|x| [u + (v - u) * x, c + (d - c) * x]);
+            if alone.tells(ends) {
+                let blur = |[u, cos]: [f64; 2], x: f64| alone.texels_blurred(1.0 / u, cos, width(x));
+                let blurs = [blur(ends[0], low), blur(ends[1], high)];
+                return alone.add(shares, count, blurs, self.volumes.accuracy.dark, medium);
+            }
+        }
+        let grain = Grain { footprints: [width(low), width(high)], spacing: passed.iter().map(apart).collect() };
         if layers {
             self.layers(shares, count, &grain, medium);
         } else {
@@ -485,14 +524,14 @@ struct Pieces {
 }
 
 impl Pieces {
-    /// `u`: 1/r at the ends of the part; `swept`: its angle; nothing is where 1/r is less than `outer`; `widest`: the
-    /// greatest change of ln r over a piece.
-    fn new([u, v]: [f64; 2], swept: f64, outer: f64, widest: f64) -> Self {
+    /// `u`: 1/r at the ends of the part; `swept`: its angle; nothing is where 1/r is less than `outer`.
+    fn new([u, v]: [f64; 2], swept: f64, outer: f64) -> Self {
         let share = |at: f64| (outer - at) / (v - u);
         let begin = if u < outer && v > outer { share(u).abs() } else { 0.0 };
         let end = if v < outer && u > outer { share(u).abs() } else { 1.0 };
         let ratio = v.max(outer) / u.max(outer);
-        let count = (ratio.ln().abs() / widest).max(swept / PIECE_ANGLE).ceil().clamp(1.0, MOST_PIECES);
+        let count = (ratio.ln().abs() / PIECE_LN_R).max(swept / PIECE_ANGLE) - PIECE_SLACK;
+        let count = count.ceil().clamp(1.0, MOST_PIECES);
         Self { count: count as u32, ends: [begin, end], ratio }
     }
 
@@ -515,7 +554,7 @@ mod tests {
             [(1e-6, 0.05, 0.2), (0.05, 1e-9, 0.01), (0.1, 0.1, 0.6), (0.3, -0.02, 0.25), (0.2, 0.3, 0.0)]
         {
             let outer = 0.01;
-            let pieces = Pieces::new([u, v], swept, outer, PIECE_LN_R);
+            let pieces = Pieces::new([u, v], swept, outer);
             let at = |k: u32| u + (v - u) * pieces.border(k);
             let within = |u: f64| u.max(outer);
             assert!((at(0) - within(u)).abs() < 1e-12 && (at(pieces.count) - within(v)).abs() < 1e-12, "{u} {v}");

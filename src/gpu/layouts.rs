@@ -3,7 +3,7 @@
 //! them.
 
 use super::frame::resources::{bloom_textures, occluder, sky_target};
-use super::frame::uniforms::{band, clouds, frame, matter, outputs, rays};
+use super::frame::uniforms::{bake, band, clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -28,6 +28,7 @@ fn shared() -> Vec<Layout> {
         occluder::layout(),
         matter,
         band::layout(),
+        bake::layout(),
         cloud,
         clouds,
         given,

@@ -182,6 +182,64 @@ impl BlackbodyTable {
     }
 }
 
+/// K. Beside the table: polynomials of x = T0 / (T + T0), for places of which there are many. They are Chebyshev's
+/// approximations of the same functions from 500 K up, where x is `FIT_END`: red and blue of luminance 1 within 2e-4,
+/// luminance within 1.1e-3 relative; colder bodies have the colour of one of 500 K. (With T0 = 1500 K the degree is
+/// least.)
+pub(crate) const FIT_TEMPERATURE: f64 = 1500.0;
+pub(crate) const FIT_END: f64 = 0.75;
+/// Red and blue of luminance 1, not clamped; ln(Y / T) + WIEN_TEMPERATURE / T.
+pub(crate) const FIT_RED: [f64; 8] =
+    [0.663_625_606, 0.894_545_352, 3.465_490_6, 17.122_026_9, -14.157_047_8, -46.695_072_5, 152.429_494, -114.024_739];
+pub(crate) const FIT_BLUE: [f64; 10] = [
+    2.229_198_27,
+    -4.563_300_01,
+    -11.937_947_9,
+    -65.622_293_4,
+    792.779_955,
+    -2_857.431_66,
+    5_572.286_17,
+    -6_349.954_27,
+    3_974.247_81,
+    -1_055.206_29,
+];
+pub(crate) const FIT_LUMINANCE: [f64; 10] = [
+    9.160_229_82,
+    6.039_616_87,
+    -10.946_834_4,
+    47.473_255_5,
+    -525.120_433,
+    2_577.725_95,
+    -6_770.700_71,
+    10_066.457_8,
+    -8_018.125_99,
+    2_676.730_95,
+];
+
+fn fitted(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}
+
+/// The coordinate of the fit, and 1 / T.
+fn fit_place(ln_temperature: f64) -> [f64; 2] {
+    let inverse = (-ln_temperature).exp();
+    [(FIT_TEMPERATURE * inverse / (1.0 + FIT_TEMPERATURE * inverse)).min(FIT_END), inverse]
+}
+
+/// The luminance of a blackbody at e^`ln_temperature` K over e^`log_reference`.
+pub fn fitted_luminance(ln_temperature: f64, log_reference: f64) -> f64 {
+    let [x, inverse] = fit_place(ln_temperature);
+    let ln_ratio = fitted(&FIT_LUMINANCE, x) + ln_temperature - WIEN_TEMPERATURE * inverse - log_reference;
+    ln_ratio.min(MAX_LN_RATIO).exp()
+}
+
+/// The colour of luminance 1 of a blackbody at e^`ln_temperature` K, inside the gamut.
+pub fn fitted_colour(ln_temperature: f64) -> [f64; 3] {
+    let [x, _] = fit_place(ln_temperature);
+    let (red, blue) = (fitted(&FIT_RED, x), fitted(&FIT_BLUE, x));
+    into_gamut([red, (1.0 - LUMINANCE[0] * red - LUMINANCE[2] * blue) / LUMINANCE[1], blue])
+}
+
 /// A colour of luminance 1 mixed with white of luminance 1 until no component is negative: keeps luminance and hue (in
 /// the chromaticity diagram, the line through white), continuous.
 pub fn into_gamut(rgb: [f64; 3]) -> [f64; 3] {
@@ -192,6 +250,26 @@ pub fn into_gamut(rgb: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// From 500 K up to any temperature: what is said of the fit.
+    #[test]
+    fn fits_are_near_the_table() {
+        let table = BlackbodyTable::shared();
+        let mut temperature = 500.0;
+        while temperature < 1e9 {
+            let ln = f64::ln(temperature);
+            let ratio = fitted_luminance(ln, table.ln_luminance(temperature));
+            assert!((ratio - 1.0).abs() < 1.2e-3, "{temperature} K: {ratio}");
+            let [r, g, b, _] = table.blackbody_lookup(temperature);
+            let (colour, expected) = (fitted_colour(ln), into_gamut([r, g, b]));
+            let off = (0..3).map(|i| (colour[i] - expected[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 5e-4, "{temperature} K: {colour:?}, not {expected:?}");
+            temperature *= 1.01;
+        }
+        // Cold bodies are dark, whatever their colour.
+        assert!(fitted_luminance(f64::ln(100.0), table.ln_luminance(500.0)) < 1e-40);
+        assert!(fitted_colour(-1e3).into_iter().chain(fitted_colour(1e3)).all(f64::is_finite));
+    }
 
     fn luminance(rgb: [f64; 3]) -> f64 {
         (0..3).map(|i| LUMINANCE[i] * rgb[i]).sum()

@@ -183,12 +183,13 @@ impl Scene {
         Volumes::new(&self.volumes, &self.hot_spots, self.hole.spin, self.effects, when, accuracy)
     }
 
-    /// The matter with depth as observers see it who are at rest, or fall inside the horizon, and whose clocks show the
-    /// scene's time: host's rays begin at such.
-    pub fn volumes_now(&self) -> Volumes {
+    /// The matter with depth as an observer at `r` sees it who is at rest, or falls inside the horizon, and whose clock
+    /// shows the scene's time: host's rays begin at such.
+    pub fn volumes_now(&self, r: f64) -> Volumes {
         let delayed = self.effects.has(Effects::LIGHT_DELAY);
-        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX);
-        self.volumes_at(When { time, reference_delay: 0.0, delayed }, Accuracy::EXACT)
+        let reference_delay = if delayed { r } else { 0.0 };
+        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay;
+        self.volumes_at(When { time, reference_delay, delayed }, Accuracy::EXACT)
     }
 
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as

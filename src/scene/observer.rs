@@ -116,6 +116,12 @@ pub struct Lens {
 }
 
 impl Lens {
+    /// The angle of a pixel in the local frame, rad, where aberration makes it least.
+    pub fn least_pixel_angle(&self) -> f64 {
+        let beta = self.observer.beta.length().min(1.0);
+        self.mapping.pixel_angle * ((1.0 - beta) / (1.0 + beta)).sqrt()
+    }
+
     /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0)
     /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look_direction`).
     pub fn look_direction(&self, x: f64, y: f64) -> DVec3 {

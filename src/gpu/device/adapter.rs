@@ -199,6 +199,7 @@ pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::Device
         max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
         max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
+        max_texture_dimension_3d: offered.max_texture_dimension_3d.min(MAX_BLOCK_SIDE),
         max_storage_buffers_per_shader_stage: offered.max_storage_buffers_per_shader_stage.min(MOST_BOUND),
         max_storage_textures_per_shader_stage: offered.max_storage_textures_per_shader_stage.min(MOST_BOUND),
         ..required_limits()
@@ -218,6 +219,8 @@ const MAX_BUFFER_SIZE: u64 = 256 << 20;
 
 /// Largest side of a texture asked for: that of a window.
 const MAX_TEXTURE_SIDE: u32 = 16384;
+/// Largest side of a texture with three sides: the rows of structure of matter with depth.
+const MAX_BLOCK_SIDE: u32 = crate::emit::grid::MOST_ROWS as u32;
 
 /// Storage buffers, and textures, of a kernel: a target for each output of a frame, and what records take.
 const MOST_BOUND: u32 = crate::scene::MOST_OUTPUTS as u32 + 4;

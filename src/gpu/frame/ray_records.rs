@@ -14,7 +14,7 @@ use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::EXPORT_VECTORS;
 use crate::gpu::kernel::variant::PixelTarget;
-use crate::gpu::lens::traced::Shared;
+use crate::gpu::lens::traced::{Shared, structure_group};
 use crate::physics::trace::Fate;
 use crate::scene::Scene;
 use crate::scene::record::Record;
@@ -90,12 +90,11 @@ impl GpuTracer {
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let (common, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
-        let tables = Tables::prepare(&mut self.tables, device, scene, setup.variants.shade.map_sampler)?;
+        let tables = Tables::prepare(&mut self.tables, device, scene, &setup)?;
         let [light_tables, ..] = tables.resources();
         let step_sum = fixed.step_sum.as_entire_binding();
         let software = self.adapter.info.software;
-        let [filaments, filament_sampler] = tables.filaments().resources();
-        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let structure = structure_group(fixed.clouds.buffer(), tables.structure());
         let (frame, pass, occluder) = (frame.clone(), pass.clone(), tables.occluder().resource());
         let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let records = buffers.record_store.stages(device, &self.kernels, &setup.record_setup, &shared)?;
@@ -111,6 +110,9 @@ impl GpuTracer {
             .passes
             .write(device, bytemuck::bytes_of(&pass_of(request, whole, (0, 1), scene.camera.projection, 0, [0, 0])))?;
         let mut encoder = device.encoder("records")?;
+        if let Some(bake) = tables.bake(device, &self.kernels, &setup)? {
+            bake.encode(&mut encoder);
+        }
         buffers.record_store.reset(setup.record_setup.source, &fixed.step_sum, &mut encoder);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -163,7 +163,7 @@ impl GpuTracer {
         let pixel_bytes = packed_bytes(request, &delivery);
         let steps = self.steps(scene, request, &setup, beside.as_ref(), &delivery)?;
 
-        let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene, &setup)?;
         [setup.uniform.milky_way_size, setup.uniform.map_size] = tables.map_sizes();
         // Rows for the host go where it maps them.
         let staged = kind == PixelTarget::Rows && matches!(delivery, Delivery::Host);
@@ -181,6 +181,7 @@ impl GpuTracer {
         self.kernels.finish(batch)?;
         let fetch = tables.occluder().fetch(&self.device, &self.kernels, scene)?;
         let sky = tables.sky_maps().fetch(&self.device, &self.kernels, scene)?;
+        let bake = tables.bake(&self.device, &self.kernels, &setup)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let beside = beside.map(|beside| {
             let (buffers, own) = (&mut self.buffers, &mut self.output_buffers);
@@ -198,6 +199,7 @@ impl GpuTracer {
             stages,
             fetch,
             sky,
+            bake,
             beside,
             request,
             target: kind,
@@ -263,6 +265,9 @@ impl GpuTracer {
     pub fn forget(&mut self) {
         self.buffers.forget();
         self.output_buffers.forget();
+        if let Some(tables) = &mut self.tables {
+            tables.forget();
+        }
     }
 }
 

@@ -21,7 +21,7 @@ use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::stage::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordMaker, RecordSource};
 use crate::gpu::lens::records::{RecordStages, STEP_SUM};
-use crate::gpu::lens::traced::Shared;
+use crate::gpu::lens::traced::{Shared, structure_group};
 use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, FrameStats, OutputSink, Progress, Tile};
 use std::collections::VecDeque;
@@ -87,13 +87,18 @@ impl GpuTracer {
         let side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
         let budget = Budget::of(self.adapter.info.discrete, self.device.limits().max_storage_buffer_binding_size);
         let plan = TilePlan::new(budget, request, bytes, side, ray_steps, 1);
-        let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene, &setup)?;
         let software = self.adapter.info.software;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: false };
         let buffers = &mut self.output_buffers;
         buffers.prepare(&self.device, size, &setup, software)?;
         let uniform = OutputsUniform::new(scene, outputs);
         self.kernels.finish(batch)?;
+        if let Some(bake) = tables.bake(&self.device, &self.kernels, &setup)? {
+            let mut encoder = self.device.encoder("structure")?;
+            bake.encode(&mut encoder);
+            self.device.submit(encoder)?;
+        }
         let stages = buffers.stages(&self.device, &self.kernels, tables, &setup, software)?;
         let rays = u64::from(request.width) * u64::from(request.height);
         let mut stats = FrameStats { rays, ..FrameStats::default() };
@@ -143,8 +148,7 @@ impl OutputBuffers {
         let uniform = self.uniform.as_ref().ok_or_else(missing)?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let [light_tables, ..] = tables.resources();
-        let [filaments, filament_sampler] = tables.filaments().resources();
-        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let structure = structure_group(fixed.clouds.buffer(), tables.structure());
         let step_sum = fixed.step_sum.as_entire_binding();
         let common = [frame.clone(), pass.clone(), light_tables.clone()];
         let occluder = tables.occluder().resource();

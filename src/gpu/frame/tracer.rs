@@ -64,7 +64,11 @@ impl GpuTracer {
 
     /// Plans frames for the device.
     pub(in crate::gpu) fn planner(&self) -> Planner<'_> {
-        Planner { info: &self.adapter.info, maps_storage: self.device.maps_storage() }
+        Planner {
+            info: &self.adapter.info,
+            maps_storage: self.device.maps_storage(),
+            block_side: self.device.limits().max_texture_dimension_3d,
+        }
     }
 
     pub fn adapter(&self) -> &Arc<Adapter> {

@@ -8,7 +8,10 @@ use super::variant::{MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
 use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_LEVEL};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
-use crate::emit::{along, bands, clouds, filaments, glow, half, matter, medium, shape, streaks, turbulence, volumes};
+use crate::emit::{
+    along, baked, baking, bands, clouds, filaments, glow, half, layers, matter, medium, shape, streaks, turbulence,
+    volumes,
+};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -42,6 +45,9 @@ macro_rules! wgsl {
     };
     (vec4 $value:expr) => {
         format!("vec4<f32> = vec4<f32>({})", list($value.map(|v| v as f32)))
+    };
+    (array $value:expr) => {
+        format!("array<f32, {0}> = array<f32, {0}>({1})", $value.len(), list($value.map(|v| v as f32)))
     };
     (mat3x2 $value:expr) => {
         format!("mat3x2<f32> = mat3x2<f32>({})", list::<f32>($value.into_iter().flatten()))
@@ -154,6 +160,11 @@ fn all() -> Vec<(&'static str, String)> {
         MAX_TEMPERATURE: f32 = blackbody::MAX_TEMPERATURE;
         COORDINATE_TEMPERATURE: f32 = blackbody::COORDINATE_TEMPERATURE;
         WIEN_TEMPERATURE: f32 = blackbody::WIEN_TEMPERATURE;
+        FIT_TEMPERATURE: f32 = blackbody::FIT_TEMPERATURE;
+        FIT_END: f32 = blackbody::FIT_END;
+        FIT_RED: array = blackbody::FIT_RED;
+        FIT_BLUE: array = blackbody::FIT_BLUE;
+        FIT_LUMINANCE: array = blackbody::FIT_LUMINANCE;
         MAX_RATIO: f32 = blackbody::MAX_RATIO;
         MAX_LN_RATIO: f32 = blackbody::MAX_LN_RATIO;
         MAX_BEAMING: f32 = blackbody::MAX_BEAMING;
@@ -169,7 +180,6 @@ fn all() -> Vec<(&'static str, String)> {
         SKY_SOURCE_LEVEL: u32 = SKY_SOURCE_LEVEL;
         BAND: f32 = bands::BAND;
         BAND_FADE: f32 = bands::BAND_FADE;
-        BANDS_APART: f32 = bands::BANDS_APART;
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
         GENERATION_FADE: f32 = bands::GENERATION_FADE;
         MOST_BANDS: u32 = bands::MOST_BANDS;
@@ -183,11 +193,13 @@ fn all() -> Vec<(&'static str, String)> {
         FILAMENT_KURTOSIS: f32 = filaments::FILAMENT_CUMULANTS[1];
         CLOUD_SHARP: f32 = clouds::CLOUD_SHARP;
         CLOUD_COARSE: f32 = clouds::CLOUD_COARSE;
-        CLOUD_SPACED: f32 = clouds::CLOUD_SPACED;
+        LEAST_CARRIED: f32 = clouds::LEAST_CARRIED;
+        ROW_GENERATIONS: u32 = baking::ROW_GENERATIONS;
+        LEAST_FACTOR: f32 = baked::LEAST_FACTOR;
+        MOST_FACTOR: f32 = baked::MOST_FACTOR;
         CLOUD_SPACING: f32 = clouds::CLOUD_SPACING;
         SHEAR: f32 = clouds::SHEAR;
         HALF_SHEARED: f32 = clouds::HALF_SHEARED;
-        WOUND: f32 = clouds::WOUND;
         LEAST_B: f32 = clouds::LEAST_B;
         OPPOSITE: f32 = shape::OPPOSITE;
         MOST_VOLUMES: u32 = Volume::MOST;
@@ -205,6 +217,8 @@ fn all() -> Vec<(&'static str, String)> {
         OFF_LINE: f32 = half::OFF_LINE;
         PIECE_LN_R: f32 = volumes::PIECE_LN_R;
         PIECE_ANGLE: f32 = volumes::PIECE_ANGLE;
+        PIECE_SLACK: f32 = volumes::PIECE_SLACK;
+        LEAST_SEEN: f32 = layers::LEAST_SEEN;
         MOST_PIECES: f32 = volumes::MOST_PIECES;
         MOST_CELLS: f32 = volumes::MOST_CELLS;
         MOST_CUTS: f32 = volumes::MOST_CUTS;
@@ -220,8 +234,10 @@ fn all() -> Vec<(&'static str, String)> {
         DARK_PICTURE: f32 = matter::Accuracy::PICTURE.dark;
         CLUMPED: f32 = matter::CLUMPED;
         LAYERS: f32 = volumes::LAYERS;
-        BLOCK_LAYERS: f32 = volumes::BLOCK_LAYERS;
-        BLOCK_ROUNDING: f32 = volumes::BLOCK_ROUNDING;
+        BLOCK_LAYERS: f32 = layers::BLOCK_LAYERS;
+        BLOCK_ROUNDING: f32 = layers::BLOCK_ROUNDING;
+        ROUND_AXIS: f32 = layers::ROUND_AXIS;
+        ROUND_HORIZON: f32 = layers::ROUND_HORIZON;
         MANY_RAYS: u32 = volumes::MANY_RAYS;
         MANY_SHARE: f32 = volumes::MANY_SHARE;
         WORTH: f32 = clouds::WORTH;

@@ -5,8 +5,8 @@
 use super::choices::{Choice, Values, Variant, readers};
 use super::sizes::{LEVEL_COLUMNS, SKY_PARTS};
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, edge_slots, output_slots,
-    pixel_slots, refine_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, bake_slots, edge_slots,
+    output_slots, pixel_slots, refine_slots, shade_slots, sum_slots,
 };
 use super::variant::{
     FilmVariant, GROUP, OutputPlaces, PixelTarget, RecordMaker, RecordSource, ShadeVariant, StoredFormat, TraceVariant,
@@ -38,6 +38,8 @@ pub enum KernelKind {
     SkyLevel(bool),
     /// The distances of a target whose rows no copy takes.
     OccluderRows,
+    /// A level of the structure of matter with depth.
+    Bake,
     Export(RecordMaker),
     Outputs(RecordMaker, OutputPlaces),
     SchwarzschildEnds,
@@ -135,7 +137,13 @@ impl KernelKind {
             Self::SchwarzschildColumns => COLUMNS,
             Self::KerrNodes => NODES,
             Self::KerrFlags => FLAGS,
-            Self::Count | Self::GatherBase | Self::Upsample | Self::Beam | Self::SkyLevel(_) | Self::OccluderRows => 0,
+            Self::Count
+            | Self::GatherBase
+            | Self::Upsample
+            | Self::Beam
+            | Self::SkyLevel(_)
+            | Self::OccluderRows
+            | Self::Bake => 0,
         }
     }
 
@@ -156,6 +164,7 @@ impl KernelKind {
             Self::Beam => "spread_beam",
             Self::SkyLevel(_) => "make_level",
             Self::OccluderRows => "take_distances",
+            Self::Bake => "bake_texels",
             Self::SchwarzschildEnds => "find_ends",
             Self::SchwarzschildColumns => "fill_columns",
             Self::KerrNodes => "trace_nodes",
@@ -182,6 +191,7 @@ impl KernelKind {
             Self::Beam => wgsl::kernel("bloom/beam"),
             Self::SkyLevel(in_parts) => wgsl::sky_level(in_parts),
             Self::OccluderRows => wgsl::kernel("emit/occluder_rows"),
+            Self::Bake => wgsl::kernel("emit/bake"),
             Self::Export(maker) => wgsl::export(maker),
             Self::Outputs(maker, places) => wgsl::outputs(maker, places),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
@@ -222,6 +232,7 @@ impl KernelKind {
                 vec![[first, vec![Slot::Read; if in_parts { SKY_PARTS - 1 } else { 0 }]].concat()]
             }
             Self::OccluderRows => vec![vec![Slot::UniformPart, Slot::Read, Slot::TextureWrite(OCCLUDER)]],
+            Self::Bake => vec![bake_slots()],
             Self::Gather | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }

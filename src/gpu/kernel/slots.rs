@@ -3,6 +3,7 @@
 //! share.
 
 use super::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
+use crate::emit::volume::Volume;
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 use crate::scene::RayOutput;
 
@@ -58,9 +59,10 @@ pub const STREAKS: TextureKind =
 pub const OCCLUDER: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R32Float, dimension: wgpu::TextureViewDimension::D2 };
 
-/// `filaments` of emit/filaments.wgsl.
+/// `filaments` of emit/bake.wgsl, and what that makes: `baked_0` and the others of traced/pixels.wgsl.
 pub const FILAMENTS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R16Float, dimension: wgpu::TextureViewDimension::D3 };
+pub const BAKED: TextureKind = FILAMENTS;
 
 /// `milky_way` and `sky_map` of shade/shade.wgsl.
 pub const SKY_MAP: TextureKind =
@@ -152,7 +154,8 @@ pub fn output_slots(places: OutputPlaces) -> Vec<Slot> {
 pub fn pixel_slots() -> Vec<Slot> {
     let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
     let records = [Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])];
-    [&records[..], &structure_slots(), &[Slot::Texture(OCCLUDER)]].concat()
+    let structure = structure_slots();
+    [&records[..], &structure[..3], &[Slot::Texture(OCCLUDER)], &structure[3..]].concat()
 }
 
 /// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.
@@ -162,9 +165,16 @@ pub fn shade_slots() -> Vec<Slot> {
     vec![Slot::Uniform, Slot::UniformPart, light, cells, map, map, Slot::Sampler, streaks, Slot::Sampler, occluder]
 }
 
-/// `clouds` of emit/clouds.wgsl, and the texture and the sampler of emit/filaments.wgsl.
-pub fn structure_slots() -> [Slot; 3] {
-    [Slot::Read, Slot::Filtered(FILAMENTS), Slot::Sampler]
+/// `clouds` of emit/clouds.wgsl, and the textures that its `baked_factor` reads, with their sampler.
+pub fn structure_slots() -> [Slot; 2 + Volume::MOST] {
+    let mut slots = [Slot::Filtered(BAKED); 2 + Volume::MOST];
+    (slots[0], slots[1 + Volume::MOST]) = (Slot::Read, Slot::Sampler);
+    slots
+}
+
+/// Group 0 of emit/bake.wgsl.
+pub fn bake_slots() -> Vec<Slot> {
+    vec![Slot::UniformPart, Slot::Read, Slot::Read, Slot::Filtered(FILAMENTS), Slot::Sampler, Slot::Write]
 }
 
 /// Group 0 of refine/refine.wgsl.

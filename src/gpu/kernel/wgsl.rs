@@ -197,6 +197,7 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("sky map, level", sky_level(false)),
         ("sky map, level from parts", sky_level(true)),
         ("the host's distances", kernel("emit/occluder_rows")),
+        ("structure of matter", kernel("emit/bake")),
         ("shade only for bloom", shade_only(Kerr, PixelTarget::Light)),
         ("refine, traced", refine(Traced, Some(PixelTarget::Packed))),
         ("refine, spin-0 lens", refine(Schwarzschild, Some(PixelTarget::Packed))),

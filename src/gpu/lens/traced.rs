@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The textures of traced records, and what the kernels bind that fill them. Knows no stages.
 
+use crate::emit::volume::Volume;
 use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::slots::{TRACED, TextureKind};
@@ -28,7 +30,7 @@ pub struct Shared<'a> {
     /// `light_tables` of shade/shade.wgsl.
     pub light_tables: wgpu::BindingResource<'a>,
     /// `structure_slots` of gpu/kernel/slots.rs.
-    pub structure: [wgpu::BindingResource<'a>; 3],
+    pub structure: [wgpu::BindingResource<'a>; 2 + Volume::MOST],
     /// `occluder` of emit/occluder.wgsl.
     pub occluder: wgpu::BindingResource<'a>,
     /// Whether the driver is software.
@@ -70,7 +72,17 @@ pub fn pixel_group<'a>(
     textures: &[wgpu::BindingResource<'a>; 3],
     shared: &Shared<'a>,
 ) -> Vec<wgpu::BindingResource<'a>> {
-    let Shared { frame, pass, light_tables, structure: [clouds, filaments, sampler], occluder, .. } = shared.clone();
+    let Shared { frame, pass, light_tables, structure, occluder, .. } = shared.clone();
     let [sky, meta, disk] = textures.clone();
-    vec![frame, pass, sky, meta, disk, light_tables, clouds, filaments, sampler, occluder]
+    let first = [frame, pass, sky, meta, disk, light_tables];
+    [&first[..], &structure[..3], &[occluder], &structure[3..]].concat()
+}
+
+/// `structure_slots` of gpu/kernel/slots.rs: the uniform of the clouds, and what `Tables::structure` has.
+pub fn structure_group<'a>(
+    clouds: &'a Buffer,
+    textures: [wgpu::BindingResource<'a>; 1 + Volume::MOST],
+) -> [wgpu::BindingResource<'a>; 2 + Volume::MOST] {
+    let mut all = std::iter::once(clouds.as_entire_binding()).chain(textures);
+    std::array::from_fn(|_| all.next().unwrap_or_else(|| clouds.as_entire_binding()))
 }

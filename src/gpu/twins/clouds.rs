@@ -4,11 +4,16 @@
 use super::inputs::Inputs;
 use super::run::{Image, Table};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
+use crate::emit::baked::Baked;
+use crate::emit::baking::BakeKey;
 use crate::emit::bands::When;
-use crate::emit::bands::{Generations, bands_at, generation_key};
-use crate::emit::clouds::{Blur, CloudPlace, Clouds, Structure, bend, footprint, worth};
+use crate::emit::bands::{GENERATION_FADE, Generations, bands_at, generation_key};
+use crate::emit::clouds::{Blur, Carried, CloudPlace, Clouds, bend, footprint, worth};
 use crate::emit::effects::Effects;
-use crate::emit::filaments::{FILAMENT_LAST, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance};
+use crate::emit::filaments::{
+    FILAMENT_LAST, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance, level_variances,
+};
+use crate::emit::grid::GRID_LEVELS;
 use crate::emit::matter::{Accuracy, VolumeMatter};
 use crate::emit::shape::{Cloud, Stretch};
 use crate::emit::volume::{FlowLaw, Shape, Volume};
@@ -20,12 +25,22 @@ use std::sync::OnceLock;
 
 /// The hooks of a kernel, and the volumes of `volumes`.
 const HOOKS: &str = "
+#import emit/bands
 #import emit/clouds
+#import emit/filaments
 @group(1) @binding(15) var<storage, read> clouds: Clouds;
 @group(1) @binding(16) var filaments: texture_3d<f32>;
 @group(1) @binding(17) var repeating: sampler;
+@group(1) @binding(18) var baked: texture_3d<f32>;
+@group(1) @binding(19) var<storage, read> variances: array<vec4<f32>>;
 fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
     return textureSampleLevel(filaments, repeating, place, level).x;
+}
+fn level_variances(level: u32) -> vec2<f32> {
+    return variances[level].xy;
+}
+fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 {
+    return textureSampleLevel(baked, repeating, place, level).x;
 }
 ";
 
@@ -47,18 +62,42 @@ fn volumes() -> &'static Volumes {
 fn images() -> Vec<Image> {
     let levels = Filaments::shared().expect("filaments").levels().map(|level| level.expect("a level").1);
     let texels = levels.flatten().map(half::f16::to_bits).collect::<Vec<_>>();
-    vec![Image {
-        name: "filaments",
+    let baked = baked().texels().iter().flatten().map(|texel| half::f16::from_f32(*texel).to_bits());
+    let baked = baked.collect::<Vec<_>>();
+    let image = |name, size: [usize; 3], levels: usize, texels: &[u16]| Image {
+        name,
         format: wgpu::TextureFormat::R16Float,
-        size: FILAMENT_SIDES.map(|side| side as u32),
+        size: size.map(|side| side as u32),
         solid: true,
-        levels: FILAMENT_LAST as u32 + 1,
-        bytes: bytemuck::cast_slice(&texels).to_vec(),
-    }]
+        levels: levels as u32,
+        bytes: bytemuck::cast_slice(texels).to_vec(),
+    };
+    let key = key(0).expect("structure");
+    vec![
+        image("filaments", FILAMENT_SIDES, FILAMENT_LAST + 1, &texels),
+        image("baked", key.clouds.grid.sides(key.finest), GRID_LEVELS - key.finest, &baked),
+    ]
+}
+
+/// The key of the structure of a volume.
+fn key(index: usize) -> Option<BakeKey> {
+    let key = volumes().volumes[index].bake_key(0.7, 1.0, 0.0);
+    key.map(|key| BakeKey { finest: 2, ..key })
+}
+
+/// The structure of the first volume.
+fn baked() -> &'static Baked {
+    static BAKED: OnceLock<Baked> = OnceLock::new();
+    BAKED.get_or_init(|| Baked::new(&key(0).expect("structure")).expect("texels"))
 }
 
 fn tables() -> Vec<Table> {
-    vec![Table { name: "clouds", bytes: bytemuck::bytes_of(&CloudsUniform::new(volumes())).to_vec() }]
+    let clouds = CloudsUniform::new(&[0, 1, 2, 3].map(key));
+    let variances = level_variances().map(|[fine, coarse]| [fine as f32, coarse as f32, 0.0, 0.0]);
+    vec![
+        Table { name: "clouds", bytes: bytemuck::bytes_of(&clouds).to_vec() },
+        Table { name: "variances", bytes: bytemuck::cast_slice(&variances).to_vec() },
+    ]
 }
 
 fn volume(i: &Inputs) -> (&'static VolumeMatter, Option<&'static Clouds>, Cloud) {
@@ -72,6 +111,27 @@ fn structured(i: &mut Inputs) {
     i.push_word(picked);
 }
 
+/// A volume that has structure, a place and a time, how matter is carried there, and the width of a pixel.
+fn push_place(i: &mut Inputs) {
+    structured(i);
+    push_place_between(i, 2.5, 40.0);
+}
+
+fn push_place_between(i: &mut Inputs, low: f64, high: f64) {
+    let r = i.log(low, high);
+    i.even(-0.99, 0.99);
+    i.even(-PI, PI);
+    i.even(-50.0, 50.0);
+    i.push(1.0 / (r * r.sqrt() + 0.7));
+    i.even(-0.01, 0.01);
+    i.log(1e-3, 1.0);
+}
+
+fn place(i: &Inputs) -> (CloudPlace, Carried) {
+    let at = CloudPlace { r: i.x(1), cos: i.x(2), azimuth: i.x(3), later: i.x(4) };
+    (at, Carried { omega: i.x(5), drift: i.x(6) })
+}
+
 /// A band's age, time from birth to birth and number, as bits are given, and how much later.
 fn push_band(i: &mut Inputs) {
     let spacing = i.random.log(5.0, 1e3);
@@ -83,7 +143,7 @@ fn push_band(i: &mut Inputs) {
 }
 
 fn band(i: &Inputs) -> crate::emit::bands::Band {
-    crate::emit::bands::Band { age: i.x(0), spacing: i.x(1), generation: i.word(2), drift: 0.0 }
+    crate::emit::bands::Band { age: i.x(0), spacing: i.x(1), generation: i.word(2), drift: 0.0, fade: GENERATION_FADE }
 }
 
 pub fn group() -> Group {
@@ -194,30 +254,50 @@ pub fn group() -> Group {
         ),
         twin(
             clouds,
-            "cloud_pattern cloud_shift level_variances",
-            "let at = CloudPlace(in1(1u), in1(2u), in1(3u), in1(4u));
-             out2(cloud_pattern(word(0u), at, in1(5u), Blur(in1(6u), in1(7u))));",
+            "cloud_place",
+            "out3(cloud_place(word(0u), CloudPlace(in1(1u), in1(2u), in1(3u), in1(4u)), in2(5u)));",
+            push_place,
+            |i, o| {
+                let (_, clouds, cloud) = volume(i);
+                let (at, carried) = place(i);
+                let [turns, row, layer] = clouds.expect("structure").place(&cloud, &at, carried);
+                // Turns of 100 M and more.
+                o.near(turns, 10.0);
+                o.near(row, 1.0);
+                o.near(layer, 1.0);
+            },
+            TRANSCENDENTAL,
+        ),
+        twin(
+            clouds,
+            "cloud_blur",
+            "out1(cloud_blur(word(0u), in1(1u), in1(2u), in1(7u)));",
+            push_place,
+            |i, o| {
+                let (_, clouds, cloud) = volume(i);
+                let blur = Blur { footprint: i.x(7), spacing: 0.0 };
+                o.put(clouds.expect("structure").level(&cloud, i.x(1), i.x(2), blur).exp2());
+            },
+            TRANSCENDENTAL,
+        ),
+        twin(
+            clouds,
+            "cloud_pattern cloud_factor",
+            "let at = CloudPlace(in1(1u), in1(2u), in1(3u), in1(4u)); out2(cloud_pattern(0u, at, in2(5u), in1(7u)));",
             |i| {
-                i.pick(4);
-                let r = i.random.log(2.0, 40.0);
-                i.push(r);
-                i.even(-0.99, 0.99);
-                i.even(-PI, PI);
-                i.even(-300.0, 300.0);
-                i.push(1.0 / (r * r.sqrt() + 0.7));
-                i.log(1e-3, 1.0);
-                i.log(1e-2, 10.0);
+                // Not where the rows end: this sampler goes around there as well.
+                i.push_word(0);
+                push_place_between(i, 6.0, 25.0);
             },
             |i, o| {
                 let (_, clouds, cloud) = volume(i);
-                let at = CloudPlace { r: i.x(1), cos: i.x(2), azimuth: i.x(3), later: i.x(4) };
-                let blur = Blur { footprint: i.x(6), spacing: i.x(7) };
-                let filaments = Filaments::shared().expect("filaments");
-                let seen = clouds.map_or(Structure::NONE, |c| c.pattern(filaments, &cloud, &at, i.x(5), blur));
-                o.near(seen.density, 1.0);
+                let (at, carried) = place(i);
+                let blur = Blur { footprint: i.x(7), spacing: 0.0 };
+                let seen = baked().pattern((clouds.expect("structure"), &cloud), &at, carried, blur);
+                o.near(seen.density, seen.density.max(1.0));
                 o.near(seen.heat, 1.0);
             },
-            // The error of filament_value, in the exponent.
+            // Samplers weigh texels, and levels, in steps of 1/256.
             2e-2,
         ),
         twin(

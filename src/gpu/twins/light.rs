@@ -10,7 +10,9 @@ use crate::emit::streaks::{STREAK_COLUMNS, STREAK_LAST, STREAK_ROWS, Streaks};
 use crate::emit::thin_disk::{emission_law, profile_row};
 use crate::emit::turbulence::Turbulence;
 use crate::gpu::kernel::slots::STREAKS;
-use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, into_gamut};
+use crate::physics::blackbody::{
+    BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, fitted_colour, fitted_luminance, into_gamut,
+};
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::zamo_frequency;
@@ -303,13 +305,38 @@ pub fn group() -> Group {
             },
             4e-3,
         ),
+        twin(
+            blackbody,
+            "blackbody_luminances",
+            "out4(blackbody_luminances(in4(0u), in1(4u)));",
+            |i| {
+                (0..4).for_each(|_| {
+                    i.even(500.0_f64.ln(), 1e7_f64.ln());
+                });
+                i.even(2.0, 18.0);
+            },
+            |i, o| (0..4).for_each(|k| o.put(fitted_luminance(i.x(k), i.x(4)))),
+            // Exponentials of numbers of some tens.
+            3e-5,
+        ),
+        twin(
+            blackbody,
+            "blackbody_colour",
+            "out3(blackbody_colour(in1(0u)));",
+            |i| {
+                i.even(500.0_f64.ln(), 1e7_f64.ln());
+            },
+            |i, o| o.all(fitted_colour(i.x(0)), 1.0),
+            // Terms of some hundreds cancel each other.
+            1e-4,
+        ),
     ];
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
                    fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32,
                    end: f32) {}\n\
                    fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n\
                    var<private> clouds: Clouds;\n\
-                   fn filament_texel(place: vec3<f32>, level: f32) -> f32 { return 0.0; }\n";
+                   fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 { return 1.0; }\n";
     Group {
         name: "light",
         head: [imports, FRAME, FRAMES, HOOKS].concat(),

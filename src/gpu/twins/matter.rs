@@ -28,7 +28,7 @@ const HOOKS: &str = "
 @group(1) @binding(13) var<storage, read> light_tables: array<vec4<f32>>;
 fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 var<private> clouds: Clouds;
-fn filament_texel(place: vec3<f32>, level: f32) -> f32 { return 0.0; }
+fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 { return 1.0; }
 fn out_place(p: Place) { out4(vec4<f32>(p.sigma, p.delta, p.big_a, p.lapse)); out1(p.around); }
 ";
 
@@ -232,6 +232,22 @@ fn flows() -> Vec<super::Twin> {
             |i, o| {
                 let (a, p) = place_of(i);
                 let found = Velocity { around: i.x(25), radial: i.x(26) }.angular_velocity(a, &p);
+                o.near(found, p.lapse / p.around);
+            },
+            1e-5,
+        ),
+        twin(
+            flow,
+            "drift_rate",
+            at_place!("out1(drift_rate(p, in2(25u)));"),
+            |i| {
+                place(i);
+                i.even(-0.9, 0.9);
+                i.even(-1.0, 1.0);
+            },
+            |i, o| {
+                let (_, p) = place_of(i);
+                let found = Velocity { around: i.x(25), radial: i.x(26) }.radial_velocity(&p) / p.r;
                 o.near(found, p.lapse / p.around);
             },
             1e-5,

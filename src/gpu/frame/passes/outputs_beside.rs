@@ -19,7 +19,7 @@ use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, RecordSource};
 use crate::gpu::lens::records::{RecordStages, RecordStore};
-use crate::gpu::lens::traced::Shared;
+use crate::gpu::lens::traced::{Shared, structure_group};
 use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, Tile};
 
@@ -243,8 +243,7 @@ impl BesideSetup {
         let uniforms = if self.reads_again { fixed } else { own.frame.fixed.as_ref().ok_or_else(missing)? };
         let (frame, pass) = (uniforms.frame.buffer.as_entire_binding(), fixed.pass());
         let [light_tables, ..] = tables.resources();
-        let [filaments, filament_sampler] = tables.filaments().resources();
-        let structure = [uniforms.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let structure = structure_group(uniforms.clouds.buffer(), tables.structure());
         let step_sum = fixed.step_sum.as_entire_binding();
         let common = [frame.clone(), pass.clone(), light_tables.clone()];
         let occluder = tables.occluder().resource();

@@ -18,7 +18,7 @@ use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::stage::{Compiled, Stage};
 use crate::gpu::kernel::variant::RecordSource;
 use crate::gpu::lens::records::{RecordSetup, RecordStages};
-use crate::gpu::lens::traced::Shared;
+use crate::gpu::lens::traced::{Shared, structure_group};
 use crate::tracer::Tile;
 use std::slice;
 
@@ -124,8 +124,7 @@ impl FrameBuffers {
         let frame = fixed.frame.buffer.as_entire_binding();
         let step_sum = fixed.step_sum.as_entire_binding();
         let [light_tables, ..] = tables.resources();
-        let [filaments, filament_sampler] = tables.filaments().resources();
-        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let structure = structure_group(fixed.clouds.buffer(), tables.structure());
         let occluder = tables.occluder().resource();
         let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;

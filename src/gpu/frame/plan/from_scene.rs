@@ -4,6 +4,8 @@
 use super::f32_settings::{for_f32, variant};
 use super::setup::{Setup, ShadingVariants};
 use crate::emit::Emitters;
+use crate::emit::baking::BakeKey;
+use crate::emit::grid::GRID_LAST;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
@@ -25,6 +27,8 @@ pub struct Planner<'a> {
     pub info: &'a AdapterInfo,
     /// Whether kernels can write buffers that the host maps.
     pub maps_storage: bool,
+    /// The longest side of a texture with three.
+    pub block_side: u32,
 }
 
 impl Planner<'_> {
@@ -92,8 +96,19 @@ impl Planner<'_> {
         };
         let record_setup = self.record_setup(scene, &emitters, &lens, &settings, &request.region, projection);
         let uniform = FrameUniform::new(scene, &emitters, &lens, &settings, record_setup.crossings)?;
-        let clouds = emitters.volumes.has_structure().then(|| CloudsUniform::new(&emitters.volumes));
-        Ok(Setup { record_setup, variants, samples, uniform, clouds, film, bloom })
+        let structure = self.structure(&emitters, scene.hole.spin, &lens);
+        let clouds = structure.iter().any(Option::is_some).then(|| CloudsUniform::new(&structure));
+        Ok(Setup { record_setup, variants, samples, uniform, clouds, structure, film, bloom })
+    }
+
+    /// The key of the structure of each volume, as far as the device's textures hold it.
+    fn structure(&self, emitters: &Emitters, spin: f64, lens: &Lens) -> Vec<Option<BakeKey>> {
+        let (r, pixel_angle) = (lens.observer.frame.r, lens.least_pixel_angle());
+        let held = |key: BakeKey| {
+            let fits = |level: &usize| key.clouds.grid.sides(*level)[1] <= self.block_side as usize;
+            BakeKey { finest: (key.finest..GRID_LAST).find(fits).unwrap_or(GRID_LAST), ..key }
+        };
+        emitters.volumes.volumes.iter().map(|volume| volume.bake_key(spin, r, pixel_angle).map(held)).collect()
     }
 
     /// How the records of a frame are made.

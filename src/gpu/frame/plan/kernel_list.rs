@@ -8,15 +8,17 @@ use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::variant::{OutputPlaces, RecordMaker};
 
 impl Setup {
-    /// The kernels that make records, or the tables that they are looked up in.
+    /// The kernels that make records, or the tables that they are looked up in, and the structure of matter.
     pub(in crate::gpu) fn record_kernels(&self) -> Vec<KernelKey> {
         let source = self.record_setup.source;
+        let bake = self.clouds.is_some().then(|| KernelKind::Bake.into());
         let tables = |kinds: [KernelKind; 2]| kinds.map(|kind| KernelKey::new(kind, &[&source])).to_vec();
-        match source.maker {
+        let made = match source.maker {
             RecordMaker::Traced => self.record_setup.trace_keys(),
             RecordMaker::Schwarzschild => tables([KernelKind::SchwarzschildEnds, KernelKind::SchwarzschildColumns]),
             RecordMaker::Kerr | RecordMaker::KerrDeferred => tables([KernelKind::KerrNodes, KernelKind::KerrFlags]),
-        }
+        };
+        bake.into_iter().chain(made).collect()
     }
 
     /// Every kernel of the frame; those that take longest to make come last.

@@ -3,6 +3,7 @@
 //! Plain data; from_scene.rs fills it from a scene.
 
 use super::target_rows::FrameRows;
+use crate::emit::baking::BakeKey;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
@@ -67,6 +68,8 @@ pub(in crate::gpu) struct Setup {
     pub(in crate::gpu) uniform: FrameUniform,
     /// `None`: no matter with depth has structure.
     pub(in crate::gpu) clouds: Option<CloudsUniform>,
+    /// The key of the structure of each volume; `None` for even ones.
+    pub(in crate::gpu) structure: Vec<Option<BakeKey>>,
     pub(in crate::gpu) film: FilmParams,
     pub(in crate::gpu) bloom: Option<Bloom>,
 }

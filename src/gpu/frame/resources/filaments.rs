@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The filaments of matter with depth as a texture, made when a scene first shows them.
+//! The filaments of matter with depth as a texture, from which its structure is made; when a scene first shows them.
 
 use crate::emit::filaments::{FILAMENT_LAST, FILAMENT_SIDES, Filaments};
 use crate::error::Result;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::slots::FILAMENTS;
-use crate::scene::Scene;
 
 pub struct FilamentTexture {
     /// One texel until a scene shows them.
@@ -35,12 +34,9 @@ impl FilamentTexture {
         })
     }
 
-    /// Makes the texture if the scene is the first to show it. Errors: as [`Device::scoped`]; it is then made when it
-    /// is needed next.
-    pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
-        // The settings are asked first: most scenes have none, and emitters take time to make.
-        let may = scene.volumes.iter().any(|volume| volume.turbulence > 0.0);
-        if self.made || !may || !scene.emitters().volumes.has_structure() {
+    /// Makes the texture, unless it is there. Errors: as [`Device::scoped`]; it is then made when it is needed next.
+    pub fn make(&mut self, device: &Device) -> Result<()> {
+        if self.made {
             return Ok(());
         }
         let sides = FILAMENT_SIDES.map(|side| side as u32);

@@ -7,6 +7,7 @@ pub(in crate::gpu) mod cached_uniform;
 pub(in crate::gpu) mod edge_list;
 pub(in crate::gpu) mod staging_layout;
 pub(in crate::gpu) mod filaments;
+pub(in crate::gpu) mod baked;
 pub(in crate::gpu) mod ray_buffers;
 pub(in crate::gpu) mod sky_texture;
 pub(in crate::gpu) mod streaks;

@@ -6,11 +6,12 @@ use crate::gpu::device::timer;
 use crate::gpu::lens::records::STEP_SUM;
 use crate::tracer::PASSES;
 
-/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
-pub const MOST_PASSES: usize = PASSES + 1;
+/// Compute passes of a submission at most: one of each kind, and the structure's and the outputs', which count as
+/// shading.
+pub const MOST_PASSES: usize = PASSES + 2;
 
 pub const TICKS: u64 = 0;
-pub const STEPS: [u64; 2] = [64, 64 + STEP_SUM];
+pub const STEPS: [u64; 2] = [128, 128 + STEP_SUM];
 pub const STEPS_END: u64 = STEPS[1] + STEP_SUM;
 pub const PIXELS: u64 = 256;
 const _: () = assert!(TICKS + MOST_PASSES as u64 * timer::PASS_BYTES <= STEPS[0] && STEPS_END <= PIXELS);

@@ -2,17 +2,21 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
 //! entries a row (shade/shade.wgsl says why). Beside them lie pictures: sky maps, the streaks of the disk, and the
-//! filaments of matter with depth.
+//! filaments and the structure of matter with depth.
 
+use super::baked::{Bake, BakedTextures};
 use super::filaments::FilamentTexture;
 use super::occluder::OccluderTexture;
 use super::sky_maps::SkyMaps;
 use super::streaks::StreakTexture;
 use crate::allocate::{collected, with_room};
 use crate::emit::thin_disk::profile_row;
+use crate::emit::volume::Volume;
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::setup::Setup;
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::sizes::TABLE_WIDTH;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
@@ -36,6 +40,7 @@ pub struct Tables {
     sky_maps: SkyMaps,
     streaks: StreakTexture,
     filaments: FilamentTexture,
+    baked: BakedTextures,
     occluder: OccluderTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
@@ -44,7 +49,7 @@ pub struct Tables {
 }
 
 /// The pictures that are kept when the stars change.
-type Pictures = (SkyMaps, StreakTexture, FilamentTexture, OccluderTexture);
+type Pictures = (SkyMaps, StreakTexture, (FilamentTexture, BakedTextures), OccluderTexture);
 
 /// A texture of `size` entries in rows, the last one filled up.
 fn table<T: bytemuck::Pod>(
@@ -73,22 +78,23 @@ fn table<T: bytemuck::Pod>(
 
 impl Tables {
     fn new(device: &Device, stars: Arc<StarIndex>, pictures: Pictures) -> Result<Self> {
-        let (sky_maps, streaks, filaments, occluder) = pictures;
+        let (sky_maps, streaks, (filaments, baked), occluder) = pictures;
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
         let lost_uploads = device.uploads.lost();
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, occluder, profile_spin: None, lost_uploads })
+        let profile_spin = None;
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, baked, occluder, profile_spin, lost_uploads })
     }
 
-    /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
-    /// UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
+    /// Brings the tables up to the scene's stars, maps, disk and volumes, the frame being set up. Errors: UNSUPPORTED
+    /// where the device's textures are too small; OUT_OF_MEMORY.
     pub fn prepare<'a>(
         tables: &'a mut Option<Self>,
         device: &Device,
         scene: &Scene,
-        map_sampler: bool,
+        setup: &Setup,
     ) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
         let held = tables.take().filter(|held| held.lost_uploads == device.uploads.lost());
@@ -105,17 +111,18 @@ impl Tables {
             }
             None => {
                 let (maps, streaks) = (SkyMaps::new(device)?, StreakTexture::new(device)?);
-                let rest = (FilamentTexture::new(device)?, OccluderTexture::new(device)?);
-                Self::new(device, stars, (maps, streaks, rest.0, rest.1))?
+                let structure = (FilamentTexture::new(device)?, BakedTextures::new(device)?);
+                let occluder = OccluderTexture::new(device)?;
+                Self::new(device, stars, (maps, streaks, structure, occluder))?
             }
         };
         let tables = tables.insert(made);
-        tables.update(device, scene, map_sampler)?;
+        tables.update(device, scene, setup)?;
         Ok(tables)
     }
 
     fn into_pictures(self) -> Pictures {
-        (self.sky_maps, self.streaks, self.filaments, self.occluder)
+        (self.sky_maps, self.streaks, (self.filaments, self.baked), self.occluder)
     }
 
     /// Group 0 of emit/streaks.wgsl.
@@ -133,9 +140,19 @@ impl Tables {
         &self.sky_maps
     }
 
-    /// The texture and the sampler of emit/filaments.wgsl.
-    pub fn filaments(&self) -> &FilamentTexture {
-        &self.filaments
+    /// The textures that `baked_factor` of emit/clouds.wgsl reads, and their sampler.
+    pub fn structure(&self) -> [wgpu::BindingResource<'_>; 1 + Volume::MOST] {
+        self.baked.resources()
+    }
+
+    /// The work that a frame begins with, as [`BakedTextures::bake`].
+    pub fn bake(&mut self, device: &Device, kernels: &Kernels, setup: &Setup) -> Result<Option<Bake>> {
+        self.baked.bake(device, kernels, &self.filaments, &setup.structure)
+    }
+
+    /// After a frame that failed or was left.
+    pub fn forget(&mut self) {
+        self.baked.forget();
     }
 
     /// In the order of group 0 of shade/shade.wgsl.
@@ -152,10 +169,13 @@ impl Tables {
     }
 
     /// Brings the profile up to the scene's disk, and the maps up to its sky.
-    fn update(&mut self, device: &Device, scene: &Scene, map_sampler: bool) -> Result<()> {
-        self.sky_maps.update(device, scene, map_sampler)?;
+    fn update(&mut self, device: &Device, scene: &Scene, setup: &Setup) -> Result<()> {
+        self.sky_maps.update(device, scene, setup.variants.shade.map_sampler)?;
         self.streaks.update(device, scene)?;
-        self.filaments.update(device, scene)?;
+        if setup.clouds.is_some() {
+            self.filaments.make(device)?;
+        }
+        self.baked.update(device, &setup.structure)?;
         self.occluder.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {

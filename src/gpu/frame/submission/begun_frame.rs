@@ -11,6 +11,7 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::passes::outputs_beside::Beside;
 use crate::gpu::frame::passes::picture::Stages;
 use crate::gpu::frame::plan::steps::{Step, Steps};
+use crate::gpu::frame::resources::baked::Bake;
 use crate::gpu::frame::resources::occluder::Fetch;
 use crate::gpu::frame::resources::sky_target::SkyFetch;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
@@ -24,6 +25,8 @@ pub struct BegunFrame {
     /// The host's things, and its sky, which the first submission fetches from targets.
     pub(in crate::gpu) fetch: Option<Fetch>,
     pub(in crate::gpu) sky: Option<SkyFetch>,
+    /// The structure of its volumes, which the first submission makes.
+    pub(in crate::gpu) bake: Option<Bake>,
     /// Outputs that are made with it.
     pub(in crate::gpu) beside: Option<Beside>,
     pub(in crate::gpu) request: FrameRequest,

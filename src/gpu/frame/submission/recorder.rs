@@ -66,6 +66,14 @@ impl<'a> Recorder<'a> {
         reads
     }
 
+    /// Before the passes of a frame: the structure of its volumes.
+    pub fn bake(&mut self, frame: &BegunFrame) {
+        if let Some(bake) = &frame.bake {
+            self.pass(PassKind::Shading, "structure", |pass| bake.dispatch(pass));
+            bake.copy(self.encoder);
+        }
+    }
+
     /// A pass, which is timed.
     pub fn pass(&mut self, kind: PassKind, label: &str, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
         self.recorded.passes.push(kind);

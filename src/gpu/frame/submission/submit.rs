@@ -43,6 +43,9 @@ impl FrameBuffers {
         let reads = if frame.submitted == 0 { recorder.fetch(frame) } else { Default::default() };
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, recorder.encoder);
         self.edges.reset(recorder.encoder);
+        if frame.submitted == 0 {
+            recorder.bake(frame);
+        }
         recorder.picture(device, frame, &step)?;
         recorder.count(0, steps);
         if let Some((beside, group)) = &outputs {

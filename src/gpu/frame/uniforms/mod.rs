@@ -7,3 +7,4 @@ pub(in crate::gpu) mod rays;
 pub(in crate::gpu) mod band;
 pub(in crate::gpu) mod frame;
 pub(in crate::gpu) mod clouds;
+pub(in crate::gpu) mod bake;
