@@ -32,6 +32,8 @@ pub enum Search {
 pub struct Adapter {
     pub info: AdapterInfo,
     handle: Handle,
+    /// The compiler of Direct3D 12's kernels; `None` for other interfaces.
+    hlsl: Option<HlslCompiler>,
     /// The host's device, on which alone the adapter may be used.
     host: Option<HostDevice>,
 }
@@ -53,6 +55,10 @@ impl Adapter {
             Ok(found) => Ok(Self { host, ..found.adapter }),
             Err(reason) => Err(Error::unsupported(format!("the device cannot be used: {reason}"))),
         }
+    }
+
+    pub(in crate::gpu) fn hlsl(&self) -> Option<&HlslCompiler> {
+        self.hlsl.as_ref()
     }
 
     pub(in crate::gpu) fn host(&self) -> Option<&HostDevice> {
@@ -412,7 +418,8 @@ fn checked(
         name: found.name,
     };
     let handle = Handle { raw: Some(raw), instance, gl };
-    Ok(RankedAdapter { rank: rank(kind, backend, hlsl), adapter: Adapter { info, handle, host: None } })
+    let compiler = (backend == Backend::D3d12).then(|| hlsl.clone());
+    Ok(RankedAdapter { rank: rank(kind, backend, hlsl), adapter: Adapter { info, handle, hlsl: compiler, host: None } })
 }
 
 /// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)

@@ -34,6 +34,7 @@ pub(in crate::gpu) mod turns;
 #[cfg_attr(target_vendor = "apple", path = "vulkan_host_absent.rs")]
 pub(in crate::gpu) mod vulkan_host;
 pub(in crate::gpu) mod wgpu_device;
+pub(in crate::gpu) mod deep_stack;
 pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod handover;
 pub(in crate::gpu) mod pipeline;
