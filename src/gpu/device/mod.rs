@@ -18,6 +18,7 @@ pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod interfaces;
 pub(in crate::gpu) mod loader;
 pub(crate) mod process_end;
+pub(in crate::gpu) mod native;
 pub(in crate::gpu) mod specialise;
 #[cfg_attr(
     not(all(feature = "gl", unix, not(target_vendor = "apple"), not(target_os = "android"))),
