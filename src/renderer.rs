@@ -3,6 +3,7 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
+mod first;
 mod made;
 mod presets;
 
@@ -19,6 +20,7 @@ use crate::scene::{Hit, Preset, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
+use first::{Refusal, first_that_opens};
 use made::{MadeFrames, Place};
 use parking_lot::Mutex;
 use presets::DepthCost;
@@ -156,17 +158,28 @@ impl Renderer {
                 None => cpu(),
             };
         }
-        let mut reasons = Vec::new();
-        for adapter in found {
+        let (mut reasons, mut tried) = (Vec::new(), Vec::new());
+        let open = |adapter: Adapter| {
+            if tried.contains(&adapter.info) {
+                return Err(Refusal::Unfit);
+            }
+            tried.push(adapter.info.clone());
             let _attempt = options.backend.is_none().then(attempt::begin);
             let name = adapter.info.name.clone();
-            match check(&adapter).and_then(|()| Tracer::on_gpu(adapter)) {
-                Ok(tracer) => return Ok(tracer),
-                Err(error) => {
-                    log::warn!("adapter {name} passed over: {error}");
-                    reasons.push(format!("{name}: {error}"));
-                }
-            }
+            let presents = check(&adapter).map_err(|error| (Refusal::Unfit, error));
+            let opened = presents.and_then(|()| Tracer::on_gpu(adapter).map_err(|error| (Refusal::Closed, error)));
+            opened.map_err(|(refusal, error)| {
+                log::warn!("adapter {name} passed over: {error}");
+                reasons.push(format!("{name}: {error}"));
+                refusal
+            })
+        };
+        let more = || match options.backend {
+            None => gpu::adapters(Search::Fallback, options.validation),
+            Some(_) => Vec::new(),
+        };
+        if let Some(tracer) = first_that_opens(found, |adapter| adapter.info.software, more, open) {
+            return Ok(tracer);
         }
         match options.backend {
             None => {

@@ -88,7 +88,8 @@ pub(super) fn refuse_at_the_end() -> Result<()> {
 /// # Safety
 /// `owned` is NULL or came from `Box::into_raw`, and is never used again.
 pub(super) unsafe fn destroy<T>(function: &str, owned: *mut T, end: impl FnOnce(Box<T>)) {
-    if owned.is_null() {
+    // Where all other threads are gone, what they had locked stays locked: the system takes all.
+    if owned.is_null() || process_end::is_over() {
         return;
     }
     let _call = Call::enter();

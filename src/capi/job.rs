@@ -172,6 +172,9 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
 /// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
 /// lost.
 fn cancel(function: &str, job: &BhrJob) {
+    if process_end::is_over() {
+        return;
+    }
     let _call = Call::enter();
     if job.uses_driver && process_end::is_here() {
         return;

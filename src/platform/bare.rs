@@ -18,6 +18,12 @@ pub fn stay_mapped() {}
 /// already. Here nothing runs: a system may have ended all other threads by then, as Windows has.
 pub fn at_exit(_handler: extern "C" fn()) {}
 
+/// Whether the process ends and its other threads were ended where they were, as Windows does before libraries hear of
+/// the end: a lock that one of them had stays locked, and what they were to do is never done.
+pub fn other_threads_are_gone() -> bool {
+    false
+}
+
 /// A function of a library that is looked for in the system's way, and stays loaded. Errors: what is not there.
 pub fn library_function(_library: &CStr, _function: &CStr) -> Result<NonNull<std::ffi::c_void>, NotFound> {
     Err(NotFound::Library)
@@ -52,6 +58,12 @@ impl Uncancelled {
 /// at least, unless their host wants less.
 pub fn on_enough_stack<T, F: FnOnce() -> T>(work: F) -> Result<T, F> {
     Ok(work())
+}
+
+/// The bytes of stack that this thread, or this fiber, has left. None where the system does not say, and where
+/// [`on_enough_stack`] sees to it that there are enough.
+pub fn stack_left() -> Option<usize> {
+    None
 }
 
 /// Runs code of the host's on the host's stack, where the thread was given another. `code` must not unwind.

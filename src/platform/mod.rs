@@ -32,7 +32,7 @@ pub use control_words::ControlWords;
 pub use here::{
     Uncancelled, around_thread_end, at_exit, block_file_size_signal, can_be_mapped, close_descriptor, close_file,
     copy_descriptor, descriptor_facts, folders_of_libraries, is_same_file, keep_mode, library_function, lower_priority,
-    may_follow_link, never_wider, on_enough_stack, on_host_stack, open_without_waiting, path_of_bytes, stay_mapped,
-    sync_folder,
+    may_follow_link, never_wider, on_enough_stack, on_host_stack, open_without_waiting, other_threads_are_gone,
+    path_of_bytes, stack_left, stay_mapped, sync_folder,
 };
 pub use system::{SYSTEM, System};

@@ -4,15 +4,14 @@
 use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
 use super::hlsl_compiler::HlslCompiler;
-use super::instance::{self, DriverAdapters};
-use super::{driver_lock, loader, process_end};
-use crate::attempt;
+use super::instance::DriverAdapters;
+use super::native::{self, INTERFACES, Question};
+use super::{driver_lock, loader};
 use crate::error::{Error, Result};
 use crate::platform::{SYSTEM, System};
 use crate::tracer::{AdapterInfo, Backend};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 /// The interfaces that a search looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +23,10 @@ pub enum Search {
     /// Hardware of every interface, then the software adapters of all but GL. GL is looked at only where no interface
     /// that goes before it has hardware: starting it takes as long as all the rest.
     Auto,
-    /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
+    /// Hardware behind that of [`Search::Auto`], for when none of that opens: GL's, and Direct3D 12's by FXC.
+    Fallback,
+    /// This interface alone: no other driver is asked. `Backend::Cpu` finds nothing, as the CPU tracer is no adapter of
+    /// wgpu's.
     Only(Backend),
 }
 
@@ -32,6 +34,8 @@ pub enum Search {
 pub struct Adapter {
     pub info: AdapterInfo,
     handle: Handle,
+    /// The compiler of Direct3D 12's kernels; `None` for other interfaces.
+    hlsl: Option<HlslCompiler>,
     /// The host's device, on which alone the adapter may be used.
     host: Option<HostDevice>,
 }
@@ -53,6 +57,10 @@ impl Adapter {
             Ok(found) => Ok(Self { host, ..found.adapter }),
             Err(reason) => Err(Error::unsupported(format!("the device cannot be used: {reason}"))),
         }
+    }
+
+    pub(in crate::gpu) fn hlsl(&self) -> Option<&HlslCompiler> {
+        self.hlsl.as_ref()
     }
 
     pub(in crate::gpu) fn host(&self) -> Option<&HostDevice> {
@@ -132,10 +140,14 @@ impl Drop for Handle {
 ///
 /// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
 pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
-    let native = || {
-        let DriverAdapters { instance, list, hlsl } = native(validation);
-        list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None, &hlsl)).collect::<Vec<_>>()
+    let of = |backend, by_fxc| {
+        let all = native::native(Question { backend, validation, by_fxc }).into_iter();
+        all.flat_map(|DriverAdapters { instance, list, hlsl }| {
+            list.into_iter().filter_map(move |raw| usable(raw, instance.clone(), None, &hlsl))
+        })
+        .collect::<Vec<_>>()
     };
+    let native = || INTERFACES.into_iter().flat_map(|backend| of(backend, false)).collect::<Vec<_>>();
     let mut list = match search {
         Search::All => [native(), gl().unwrap_or_default()].into_iter().flatten().collect(),
         Search::Native => native(),
@@ -145,10 +157,13 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
         },
         Search::Only(Backend::Cpu) => Vec::new(),
         Search::Only(Backend::Gl) => gl().unwrap_or_default(),
-        Search::Only(backend) => {
-            let mut list = native();
-            list.retain(|found| found.adapter.info.backend == backend);
-            list
+        Search::Only(Backend::Vulkan) => of(wgpu::Backends::VULKAN, false),
+        Search::Only(Backend::Metal) => of(wgpu::Backends::METAL, false),
+        Search::Only(Backend::D3d12) => of(wgpu::Backends::DX12, false),
+        Search::Fallback => {
+            let mut by_fxc = of(wgpu::Backends::DX12, true);
+            by_fxc.retain(|found| !found.adapter.info.software);
+            [gl_hardware(), by_fxc].into_iter().flatten().collect()
         }
     };
     list.sort_by_key(|found| found.rank);
@@ -182,9 +197,7 @@ pub fn absence(backend: Backend) -> &'static str {
 /// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
 /// costs Mesa half a megabyte that it never frees.
 pub fn forget_drivers() {
-    let forgotten = std::mem::replace(&mut *found(), NONE_FOUND);
-    let _driver = driver_lock::lock();
-    drop(forgotten);
+    native::forget();
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -228,54 +241,11 @@ const MOST_BOUND: u32 = crate::scene::MOST_OUTPUTS as u32 + 4;
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
-/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
-/// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
-/// under the host. This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other
-/// way round.
-static FOUND: Mutex<[Found; 2]> = Mutex::new(NONE_FOUND);
-
-const NONE_FOUND: [Found; 2] = [const { Found { wayland: false, adapters: DriverAdapters::NONE } }; 2];
-
-/// The result of a search.
-struct Found {
-    /// Whether the instance makes surfaces of Wayland, where there is one.
-    wayland: bool,
-    adapters: DriverAdapters,
-}
-
-fn found() -> MutexGuard<'static, [Found; 2]> {
-    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Asked anew as well where the environment has got a Wayland display since.
-fn native(validation: bool) -> DriverAdapters {
-    let wayland = instance::may_try_wayland();
-    let kept = || {
-        let kept = &found()[usize::from(validation)];
-        (!kept.adapters.list.is_empty() && (kept.wayland || !wayland)).then(|| kept.adapters.clone())
-    };
-    kept().unwrap_or_else(|| {
-        // A second thread waits for what the first one finds.
-        let _driver = driver_lock::lock();
-        kept().unwrap_or_else(|| {
-            let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-            if !loader::is_usable() {
-                log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
-                all.remove(wgpu::Backends::VULKAN);
-            }
-            let asked = ask_drivers(all, validation, wayland);
-            let now = Found { wayland, adapters: asked.clone() };
-            let before = std::mem::replace(&mut found()[usize::from(validation)], now);
-            drop(before);
-            asked
-        })
-    })
-}
-
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use
 /// at once. None without the feature `gl`; `None` when the search itself failed.
 fn gl() -> Option<Vec<RankedAdapter>> {
-    if !cfg!(feature = "gl") {
+    let question = Question { backend: wgpu::Backends::GL, validation: false, by_fxc: false };
+    if !cfg!(feature = "gl") || loader::obstacle(question.backend).is_some() {
         return Some(Vec::new());
     }
     let search = || -> Result<Vec<RankedAdapter>> {
@@ -284,7 +254,8 @@ fn gl() -> Option<Vec<RankedAdapter>> {
         thread.run(|| {
             // Adapters that are not wanted are dropped here.
             let _driver = driver_lock::lock();
-            let DriverAdapters { instance, list, hlsl } = ask_drivers(wgpu::Backends::GL, false, false);
+            let asked = native::ask_drivers(question, false).into_iter().next();
+            let Some(DriverAdapters { instance, list, hlsl }) = asked else { return Vec::new() };
             keep_display(instance);
             // All adapters of an instance share its context.
             if let Some(first) = list.first() {
@@ -317,32 +288,6 @@ fn keep_display(instance: Option<wgpu::Instance>) {
     if let Some(instance) = instance.filter(|_| SYSTEM != System::Windows) {
         KEPT.get_or_init(|| instance);
     }
-}
-
-/// A driver that panics has no adapters; where Direct3D 12 was asked, the others are asked again without it.
-fn ask_drivers(backends: wgpu::Backends, validation: bool, wayland: bool) -> DriverAdapters {
-    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
-    // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
-    let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
-    process_end::watch();
-    let _driver = driver_lock::lock();
-    let _attempt = attempt::begin();
-    let search = |backends| {
-        let found = catch_unwind(AssertUnwindSafe(|| instance::ask(backends, flags, wayland)));
-        process_end::watch();
-        found.inspect_err(|_| log::warn!("the search for adapters of {backends:?} panicked")).ok()
-    };
-    let d3d12 = wgpu::Backends::DX12 & wgpu::Instance::enabled_backend_features();
-    let others = backends - d3d12;
-    let found = search(backends).or_else(|| if others == backends { None } else { search(others) });
-    let found = found.unwrap_or(DriverAdapters::NONE);
-    if found.list.is_empty() {
-        log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
-    }
-    if found.has_d3d12() {
-        log::info!("Direct3D 12: kernels are compiled by {:?}", found.hlsl);
-    }
-    found
 }
 
 /// An adapter that can run the tracer, and its place in the list: lower is better.
@@ -415,7 +360,8 @@ fn checked(
         name: found.name,
     };
     let handle = Handle { raw: Some(raw), instance, gl };
-    Ok(RankedAdapter { rank: rank(kind, backend, hlsl), adapter: Adapter { info, handle, host: None } })
+    let compiler = (backend == Backend::D3d12).then(|| hlsl.clone());
+    Ok(RankedAdapter { rank: rank(kind, backend, hlsl), adapter: Adapter { info, handle, hlsl: compiler, host: None } })
 }
 
 /// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)

@@ -4,6 +4,7 @@
 use super::hlsl_compiler::HlslCompiler;
 use super::wayland;
 pub(super) use super::wayland::may_try_wayland;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// An instance, and the adapters it has.
 #[derive(Clone)]
@@ -14,38 +15,69 @@ pub(super) struct DriverAdapters {
     pub hlsl: HlslCompiler,
 }
 
-impl DriverAdapters {
-    pub const NONE: Self = Self { instance: None, list: Vec::new(), hlsl: HlslCompiler::Fxc };
-
-    pub fn has_d3d12(&self) -> bool {
-        self.list.iter().any(|adapter| adapter.get_info().backend == wgpu::Backend::Dx12)
-    }
-}
-
-/// The adapters of these interfaces. A driver may panic here. `wayland`: whether surfaces of Wayland can be made, too
-/// ([`may_try_wayland`]).
-pub(super) fn ask(backends: wgpu::Backends, flags: wgpu::InstanceFlags, wayland: bool) -> DriverAdapters {
-    if backends.contains(wgpu::Backends::VULKAN)
-        && !wayland
-        && let Some((instance, list)) = wayland::vulkan_without_wayland(flags)
-    {
-        return DriverAdapters { instance, list, hlsl: HlslCompiler::Fxc };
-    }
-    let asks_d3d12 = backends.intersects(wgpu::Backends::DX12 & wgpu::Instance::enabled_backend_features());
-    with_compiler(backends, flags, if asks_d3d12 { compiler(flags) } else { HlslCompiler::Fxc })
-}
-
-/// The compiler that Direct3D 12's drivers take: they have no adapters with a DXC that does not load, nor where they do
-/// not take what it makes. Found out by themselves, so that no other driver is loaded twice.
-fn compiler(flags: wgpu::InstanceFlags) -> HlslCompiler {
-    let serves = |hlsl: &HlslCompiler| {
-        let found = *hlsl == HlslCompiler::Fxc || with_compiler(wgpu::Backends::DX12, flags, hlsl.clone()).has_d3d12();
-        if !found {
-            log::info!("Direct3D 12 has no adapter with {hlsl:?}");
-        }
-        found
+/// The adapters of one interface: those of an instance, or of one for each compiler of Direct3D 12's kernels that
+/// serves. `wayland`: whether surfaces of Wayland can be made, too ([`may_try_wayland`]). `compilers`: of Direct3D 12,
+/// the best first. A driver that panics has no adapters.
+pub(super) fn ask(
+    backend: wgpu::Backends,
+    flags: wgpu::InstanceFlags,
+    wayland: bool,
+    compilers: Vec<HlslCompiler>,
+) -> Vec<DriverAdapters> {
+    let caught = |search: &dyn Fn() -> DriverAdapters| {
+        let found = catch_unwind(AssertUnwindSafe(search));
+        found.inspect_err(|_| log::warn!("the search for adapters of {backend:?} panicked")).ok()
     };
-    HlslCompiler::all().into_iter().find(serves).unwrap_or(HlslCompiler::Fxc)
+    if backend != wgpu::Backends::DX12 {
+        return caught(&|| {
+            (backend == wgpu::Backends::VULKAN && !wayland)
+                .then(|| wayland::vulkan_without_wayland(flags))
+                .flatten()
+                .map(|(instance, list)| DriverAdapters { instance, list, hlsl: HlslCompiler::Fxc })
+                .unwrap_or_else(|| with_compiler(backend, flags, HlslCompiler::Fxc))
+        })
+        .into_iter()
+        .collect();
+    }
+    let mut instances = Vec::new();
+    let found = by_compilers(
+        compilers,
+        |hlsl| {
+            let found = caught(&|| with_compiler(backend, flags, hlsl.clone()))?;
+            instances.push((hlsl.clone(), found.instance));
+            Some(found.list)
+        },
+        |adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+    );
+    let instance = |of: &HlslCompiler| instances.iter().find(|(hlsl, _)| hlsl == of)?.1.clone();
+    found.into_iter().map(|(hlsl, list)| DriverAdapters { instance: instance(&hlsl), list, hlsl }).collect()
+}
+
+/// The compilers that Direct3D 12's drivers take, with their adapters: they have none with a DXC that does not load,
+/// nor where they do not take what it makes, as GPUs that are limited to shader model 5.1. So the first that has
+/// hardware is the last that is asked; software counts of the best that has any.
+fn by_compilers<T>(
+    compilers: Vec<HlslCompiler>,
+    mut ask: impl FnMut(&HlslCompiler) -> Option<Vec<T>>,
+    is_software: impl Fn(&T) -> bool,
+) -> Vec<(HlslCompiler, Vec<T>)> {
+    let mut all = Vec::new();
+    for hlsl in compilers {
+        let mut list = ask(&hlsl).unwrap_or_default();
+        if !all.is_empty() {
+            list.retain(|adapter| !is_software(adapter));
+        }
+        if list.is_empty() {
+            log::info!("Direct3D 12 has no adapter {}with {hlsl:?}", if all.is_empty() { "" } else { "of hardware " });
+            continue;
+        }
+        let is_last = list.iter().any(|adapter| !is_software(adapter));
+        all.push((hlsl, list));
+        if is_last {
+            break;
+        }
+    }
+    all
 }
 
 fn with_compiler(backends: wgpu::Backends, flags: wgpu::InstanceFlags, hlsl: HlslCompiler) -> DriverAdapters {
@@ -55,4 +87,42 @@ fn with_compiler(backends: wgpu::Backends, flags: wgpu::InstanceFlags, hlsl: Hls
     let instance = wgpu::Instance::new(descriptor);
     let list = pollster::block_on(instance.enumerate_adapters(backends));
     DriverAdapters { instance: Some(instance), list, hlsl }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The adapters by name that are asked for with each compiler: the number of those asked, and what serves.
+    fn search(answers: &[Option<&[&'static str]>]) -> (usize, Vec<(String, Vec<&'static str>)>) {
+        let mut compilers = vec![HlslCompiler::Dxc("lib".into()), HlslCompiler::Dxc("host".into())];
+        compilers.truncate(answers.len() - 1);
+        compilers.push(HlslCompiler::Fxc);
+        let mut asked = 0;
+        let ask = |_: &HlslCompiler| {
+            asked += 1;
+            answers[asked - 1].map(<[_]>::to_vec)
+        };
+        let found = by_compilers(compilers, ask, |name| *name == "WARP");
+        (asked, found.into_iter().map(|(hlsl, list)| (hlsl.to_string(), list)).collect())
+    }
+
+    #[test]
+    fn fxc_is_asked_where_dxc_has_no_hardware() {
+        let one = |hlsl: &str, list: &[&'static str]| (hlsl.to_owned(), list.to_vec());
+        // DXC serves.
+        let answers = [Some(&["GPU", "WARP"][..]), Some(&["GPU", "WARP"])];
+        assert_eq!(search(&answers), (1, vec![one("DXC", &["GPU", "WARP"])]));
+        // A GPU of shader model 5.1, and software that takes what DXC makes.
+        let answers = [Some(&["WARP"][..]), Some(&["GPU", "WARP"])];
+        assert_eq!(search(&answers), (2, vec![one("DXC", &["WARP"]), one("FXC", &["GPU"])]));
+        // No GPU.
+        assert_eq!(search(&[Some(&["WARP"][..]), Some(&["WARP"])]), (2, vec![one("DXC", &["WARP"])]));
+        // The first DXC panics, or does not load.
+        for first in [None, Some(&[][..])] {
+            assert_eq!(search(&[first, Some(&["GPU"]), None]), (2, vec![one("DXC", &["GPU"])]));
+            assert_eq!(search(&[first, None, Some(&["GPU", "WARP"])]), (3, vec![one("FXC", &["GPU", "WARP"])]));
+        }
+        assert_eq!(search(&[Some(&[][..])]), (1, vec![]));
+    }
 }

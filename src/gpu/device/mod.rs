@@ -18,6 +18,7 @@ pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod interfaces;
 pub(in crate::gpu) mod loader;
 pub(crate) mod process_end;
+pub(in crate::gpu) mod native;
 pub(in crate::gpu) mod specialise;
 #[cfg_attr(
     not(all(feature = "gl", unix, not(target_vendor = "apple"), not(target_os = "android"))),
@@ -34,6 +35,7 @@ pub(in crate::gpu) mod turns;
 #[cfg_attr(target_vendor = "apple", path = "vulkan_host_absent.rs")]
 pub(in crate::gpu) mod vulkan_host;
 pub(in crate::gpu) mod wgpu_device;
+pub(in crate::gpu) mod deep_stack;
 pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod handover;
 pub(in crate::gpu) mod pipeline;

@@ -108,8 +108,18 @@ fn stand_still() {
     }
 }
 
-/// Whether this is the thread that ends the process, and a driver was loaded: it must not call one any more.
+/// Whether the system has ended all other threads already, as Windows does: nothing is waited for, given back or
+/// locked any more.
+pub fn is_over() -> bool {
+    platform::other_threads_are_gone()
+}
+
+/// Whether this is the thread that ends the process, and a driver was loaded: it must not call one any more. Where the
+/// end [is over](is_over), no other thread is left, and without a driver the same holds.
 pub fn is_here() -> bool {
+    if is_over() {
+        return true;
+    }
     let ending = ENDING.load(Ordering::SeqCst);
     ending != 0 && this_thread() == Some(ending)
 }
@@ -119,6 +129,9 @@ pub fn is_here() -> bool {
 /// keep a thread of the host's that the host waits for.
 pub fn keep<T: 'static>(owned: T) {
     static KEPT: Mutex<Vec<usize>> = Mutex::new(Vec::new());
+    if is_over() {
+        return std::mem::forget(owned);
+    }
     shut(longest(), KEPT_PAUSE);
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).push(std::ptr::from_mut(Box::leak(Box::new(owned))).addr());
 }

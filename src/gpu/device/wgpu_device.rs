@@ -5,6 +5,7 @@
 
 use super::adapter::{Adapter, device_descriptor};
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
+use super::hlsl_compiler::HlslCompiler;
 use super::turns::{HostTurn, QueueTurns};
 use super::vulkan::parts::{self, VulkanParts};
 use super::vulkan_host;
@@ -52,6 +53,8 @@ pub struct Device {
     /// `None` only while it is being dropped.
     queue: Option<wgpu::Queue>,
     backend: Backend,
+    /// The compiler of Direct3D 12's kernels; `None` for other interfaces.
+    hlsl: Option<HlslCompiler>,
     /// How old the EGL display was when an adapter of GL was found; `None` for other interfaces.
     gl_age: Option<DisplayAge>,
     /// Whether a pipeline was made.
@@ -155,6 +158,7 @@ impl Device {
             raw: ManuallyDrop::new(raw),
             queue: Some(queue),
             backend: adapter.info.backend,
+            hlsl: adapter.hlsl().cloned(),
             gl_age: adapter.gl_age(),
             compiled: AtomicBool::new(false),
             limits,
@@ -185,6 +189,11 @@ impl Device {
 
     pub(in crate::gpu) fn backend(&self) -> Backend {
         self.backend
+    }
+
+    /// Whether its pipelines, and those of all devices like it, are made one at a time, whoever asks for them.
+    pub(in crate::gpu) fn compiles_alone(&self) -> bool {
+        self.hlsl.as_ref().is_some_and(HlslCompiler::works_alone)
     }
 
     /// Whether the device is a host's own.
@@ -432,12 +441,15 @@ impl Device {
 }
 
 impl Device {
-    /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver.
+    /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver, and each where the
+    /// compiler has none to make for another thread.
     pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
         let first = || !self.compiled.load(Ordering::Acquire);
         // Threads that waited for the first pipeline make theirs side by side.
         let driver = first().then(driver_lock::lock).filter(|_| first());
+        let turn = self.hlsl.as_ref().and_then(HlslCompiler::turn);
         let made = compile();
+        drop(turn);
         self.compiled.store(true, Ordering::Release);
         if driver.is_some() {
             // By now the driver has loaded what it makes pipelines with.

@@ -103,10 +103,12 @@ impl PipelineCache {
         }
         state.entries.insert(key, CacheEntry::Compiling);
         drop(state);
-        // Messages wait until those who wait for the pipeline have it.
-        let _holding = hold();
-        let guard = CompileGuard { cache: self, key, ahead, compiled: None };
-        guard.settle(self.compile(device, key))
+        device.with_deep_stack(|| {
+            // Messages wait until those who wait for the pipeline have it.
+            let _holding = hold();
+            let guard = CompileGuard { cache: self, key, ahead, compiled: None };
+            guard.settle(self.compile(device, key))
+        })
     }
 
     /// Whether the kernel's pipeline is there.

@@ -23,10 +23,38 @@ use std::thread::{self, JoinHandle};
 const MOST_IN_BACKGROUND: usize = 5;
 const MOST_AT_ONCE: usize = 12;
 
+/// The threads that may make a device's pipelines beside its user's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Threads {
+    None,
+    /// One, where pipelines are made one at a time: further ones would hold kernels that a frame waits for, and wait.
+    One,
+    Many,
+}
+
+impl Threads {
+    /// How many threads make `missing` kernels for a frame that waits and makes some itself.
+    fn at_once(self, missing: usize, cores: usize) -> usize {
+        match self {
+            Self::None => 0,
+            Self::One => missing.min(1),
+            Self::Many => missing.min(cores).min(MOST_AT_ONCE),
+        }
+    }
+
+    /// How many make kernels in the background: half of the cores are left to the host, where there are several.
+    fn in_background(self, cores: usize) -> usize {
+        match self {
+            Self::None => 0,
+            Self::One => 1,
+            Self::Many => cores.div_ceil(2).min(MOST_IN_BACKGROUND),
+        }
+    }
+}
+
 /// Their owner's drop ends the threads, after the pipeline that each is making.
 pub struct Compilers {
-    /// Whether pipelines may be made on threads other than their user's.
-    threads: bool,
+    threads: Threads,
     queue: Arc<Shared>,
 }
 
@@ -132,8 +160,7 @@ fn cores() -> usize {
 }
 
 impl Compilers {
-    /// `threads`: whether the device may be used from several at once.
-    pub fn new(threads: bool) -> Self {
+    pub fn new(threads: Threads) -> Self {
         Self { threads, queue: Arc::default() }
     }
 
@@ -144,7 +171,7 @@ impl Compilers {
         device: &Arc<Device>,
         missing: Vec<KernelKey>,
     ) -> CompileBatch {
-        let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
+        let helpers = self.threads.at_once(missing.len(), cores());
         // Kernels that take longest come last in the list, and are begun first.
         let left = Arc::new(Mutex::new(missing.iter().rev().copied().collect::<VecDeque<_>>()));
         let scope = thread_scope::of_caller();
@@ -167,7 +194,7 @@ impl Compilers {
 
     /// Does `work` on a thread of low priority.
     pub fn run_in_background(&self, work: impl FnOnce() + Send + 'static) {
-        if !self.threads {
+        if self.threads == Threads::None {
             return;
         }
         let scope = thread_scope::of_caller();
@@ -188,13 +215,12 @@ impl Compilers {
     /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits
     /// since an earlier call.
     pub fn compile_later(&self, cache: &Arc<PipelineCache>, device: &Arc<Device>, keys: Vec<KernelKey>) {
-        if !self.threads {
+        let most = self.threads.in_background(cores());
+        if most == 0 {
             return;
         }
         let mut queue = self.queue.lock();
         queue.keys = keys.into();
-        // Half of the cores are left to the host, where there are several.
-        let most = cores().div_ceil(2).min(MOST_IN_BACKGROUND);
         while queue.running < most.min(queue.keys.len()) {
             let (shared, cache, device) = (self.queue.clone(), cache.clone(), device.clone());
             let scope = thread_scope::of_caller();
@@ -236,5 +262,24 @@ fn compile_in_background(shared: &Shared, cache: &PipelineCache, device: &Device
     lower_priority(NICER);
     while let Some(key) = shared.next() {
         compile(cache, |cache| cache.get_ahead(device, key));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_pipelines_are_made_one_at_a_time_one_thread_makes_them_beside_their_users() {
+        for cores in [1, 2, 16, 128] {
+            assert_eq!([Threads::None.at_once(9, cores), Threads::None.in_background(cores)], [0, 0]);
+            assert_eq!([Threads::One.at_once(9, cores), Threads::One.in_background(cores)], [1, 1]);
+        }
+        assert_eq!([Threads::One.at_once(0, 16), Threads::Many.at_once(0, 16)], [0, 0]);
+        assert_eq!(
+            [Threads::Many.at_once(9, 2), Threads::Many.at_once(9, 16), Threads::Many.at_once(99, 128)],
+            [2, 9, 12]
+        );
+        assert_eq!([1, 2, 3, 128].map(|cores| Threads::Many.in_background(cores)), [1, 1, 2, 5]);
     }
 }

@@ -2,7 +2,7 @@
 //! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time.
 
 use super::cache::PipelineCache;
-use super::compilers::{CompileBatch, Compilers};
+use super::compilers::{CompileBatch, Compilers, Threads};
 use super::key::KernelKey;
 use super::slots::edge_slots;
 use super::stage::Compiled;
@@ -41,6 +41,11 @@ impl Kernels {
     pub fn new(device: Arc<Device>, threads: bool, software: bool) -> Self {
         let most = if software { MOST_KERNELS_SOFTWARE } else { MOST_KERNELS };
         let cache = Arc::new(PipelineCache::new(most));
+        let threads = match threads {
+            true if device.compiles_alone() => Threads::One,
+            true => Threads::Many,
+            false => Threads::None,
+        };
         Self { compilers: Compilers::new(threads), cache, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
     }
 

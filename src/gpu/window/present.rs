@@ -17,6 +17,10 @@ pub struct Presenter {
 impl Presenter {
     /// Errors: as [`Device::scoped`] and [`wgsl::kernel`].
     pub fn new(device: &Device, format: wgpu::TextureFormat) -> Result<Self> {
+        device.with_deep_stack(|| Self::made(device, format))
+    }
+
+    fn made(device: &Device, format: wgpu::TextureFormat) -> Result<Self> {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,

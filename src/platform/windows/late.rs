@@ -10,7 +10,6 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 
 #[link(name = "kernel32")]
 unsafe extern "system" {
-    fn LoadLibraryA(name: *const c_char) -> *mut c_void;
     fn GetProcAddress(module: *mut c_void, name: *const c_char) -> *mut c_void;
 }
 
@@ -25,7 +24,7 @@ fn find(dll: &CStr, function: &CStr, known: &AtomicPtr<c_void>) -> *mut c_void {
     }
     // SAFETY: C strings; what the DLL does as it is loaded is as sound as with an import. It stays loaded.
     let found = unsafe {
-        match LoadLibraryA(dll.as_ptr()) {
+        match super::load(dll) {
             module if module.is_null() => module,
             module => GetProcAddress(module, function.as_ptr()),
         }

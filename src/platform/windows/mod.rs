@@ -7,16 +7,24 @@ mod late;
 /// The functions that this file does not have.
 pub use super::bare::*;
 
-use std::ffi::{OsString, c_void};
+use std::ffi::{CStr, OsString, c_char, c_void};
 use std::os::windows::ffi::OsStringExt;
 use std::path::PathBuf;
-use std::ptr::{from_ref, null_mut};
+use std::ptr::{NonNull, from_ref, null_mut};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[link(name = "kernel32")]
 unsafe extern "system" {
     fn GetModuleHandleExW(flags: u32, address: *const c_void, module: *mut *mut c_void) -> i32;
     fn GetModuleFileNameW(module: *mut c_void, name: *mut u16, size: u32) -> u32;
+    fn GetCurrentThreadStackLimits(low: *mut usize, high: *mut usize);
+    fn LoadLibraryExA(name: *const c_char, file: *mut c_void, flags: u32) -> *mut c_void;
+    fn GetProcAddress(module: *mut c_void, name: *const c_char) -> *mut c_void;
+}
+
+#[link(name = "ntdll")]
+unsafe extern "system" {
+    fn RtlDllShutdownInProgress() -> u8;
 }
 
 /// Characters of the longest path.
@@ -25,6 +33,32 @@ const LONGEST_PATH: usize = 32_768;
 const GET_MODULE_HANDLE_EX_FLAG_PIN: u32 = 1;
 const GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT: u32 = 2;
 const GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS: u32 = 4;
+
+/// The folders of the program, of the system, and those that the host has added by AddDllDirectory: neither the current
+/// folder nor those of PATH, where anybody may have put a file of the name.
+const LOAD_LIBRARY_SEARCH_DEFAULT_DIRS: u32 = 0x1000;
+
+/// Loads a library by its name, for good; NULL where it is not there. One that the process has by this name already,
+/// from wherever the host took it, is the one.
+fn load(library: &CStr) -> *mut c_void {
+    // SAFETY: a C string; what the library does as it is loaded is as sound as with an import.
+    unsafe { LoadLibraryExA(library.as_ptr(), null_mut(), LOAD_LIBRARY_SEARCH_DEFAULT_DIRS) }
+}
+
+/// A later search for the library by its name, whoever makes it, ends with this one.
+pub fn library_function(library: &CStr, function: &CStr) -> Result<NonNull<c_void>, NotFound> {
+    let module = load(library);
+    if module.is_null() {
+        return Err(NotFound::Library);
+    }
+    // SAFETY: a module that stays, and a C string.
+    NonNull::new(unsafe { GetProcAddress(module, function.as_ptr()) }).ok_or(NotFound::Function)
+}
+
+pub fn other_threads_are_gone() -> bool {
+    // SAFETY: reads a state of the process.
+    unsafe { RtlDllShutdownInProgress() != 0 }
+}
 
 static PINNED: AtomicBool = AtomicBool::new(false);
 
@@ -45,6 +79,14 @@ pub fn stay_mapped() {
     };
     // Where Windows refuses, the next call asks again.
     PINNED.store(pinned != 0, Ordering::Relaxed);
+}
+
+pub fn stack_left() -> Option<usize> {
+    let (mut low, mut high) = (0, 0);
+    // SAFETY: two numbers to be written: the bounds of the whole stack, as far as it may grow.
+    unsafe { GetCurrentThreadStackLimits(&raw mut low, &raw mut high) };
+    let here = (&raw const low).addr();
+    (low..high).contains(&here).then(|| here - low)
 }
 
 /// Where a host lays libraries that this one is to find: the folder of this library, and that of the host's program.
