@@ -31,8 +31,9 @@ fn is_dark() -> bool {
 }
 
 // All that changes slowly. `place`: share of the grid's rows, cos th, turns, and ln of the temperature seen, T g, or of
-// g of a power law. `matter`: r; the column of matter of density 1 in the plane per tau, edges apart; and what of the
-// logarithm of the density falls off as the square of a length, but for a disk's height.
+// g of a power law. `matter`: r; the column of the matter in the plane, or of a torus or halo at its densest, per tau,
+// but for a disk's edges; and what of the logarithm of the density falls off as the square of a length, but for a
+// disk's height.
 struct Slow {
     place: vec4<f32>,
     matter: vec3<f32>,
@@ -140,12 +141,6 @@ struct Places {
     ln_seen: vec4<f32>,
 }
 
-fn faded4(r: vec4<f32>, matter: Matter) -> vec4<f32> {
-    let a = clamp((r / matter.inner - INNER_FADE.x) / (INNER_FADE.y - INNER_FADE.x), vec4<f32>(0.0), vec4<f32>(1.0));
-    let b = clamp((r / matter.outer - OUTER_FADE.x) / (OUTER_FADE.y - OUTER_FADE.x), vec4<f32>(0.0), vec4<f32>(1.0));
-    return a * a * (3.0 - 2.0 * a) * (1.0 - b * b * (3.0 - 2.0 * b));
-}
-
 // The places at four shares of a piece, each as if the length `tau` were as it is there. `blur`: of the structure.
 fn places_at(matter: Matter, slow: SlowCourse, t: vec4<f32>, tau: f32, blur: f32) -> Places {
     let r = slow.begin.matter.x + t * (slow.rise.matter.x + t * slow.bend.matter.x);
@@ -156,10 +151,14 @@ fn places_at(matter: Matter, slow: SlowCourse, t: vec4<f32>, tau: f32, blur: f32
     if has_shape(matter.shape, SHAPE_DISK) {
         let heights = cosine / matter.thickness;
         falls = 0.5 * heights * heights;
-        column *= faded4(r, matter);
-    } else {
-        column = select(column, vec4<f32>(0.0), r > vec4<f32>(matter.outer));
+        // No parabola tells of soft edges, of which a piece may hold the greater part.
+        let begun = clamp((r / matter.inner - INNER_FADE.x) / (INNER_FADE.y - INNER_FADE.x), vec4<f32>(0.0),
+            vec4<f32>(1.0));
+        let ended = clamp((r / matter.outer - OUTER_FADE.x) / (OUTER_FADE.y - OUTER_FADE.x), vec4<f32>(0.0),
+            vec4<f32>(1.0));
+        column *= begun * begun * (3.0 - 2.0 * begun) * (1.0 - ended * ended * (3.0 - 2.0 * ended));
     }
+    column = select(column, vec4<f32>(0.0), r > vec4<f32>(matter.outer));
     column = max(column, vec4<f32>(0.0)) * tau * exp(-falls);
     if STRUCTURE {
         let rows = slow.begin.place.x + t * (slow.rise.place.x + t * slow.bend.place.x);

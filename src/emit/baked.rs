@@ -161,7 +161,12 @@ impl Baked {
         let [near, far] = match &self.texels {
             Texels::Made(levels) => {
                 let texels = &levels[level - self.finest];
-                zs.map(|z| between(ys.map(|y| xs.map(|x| texels[(z * sides[1] + y) * sides[0] + x]))))
+                // Written out: nested maps over arrays are not inlined.
+                let line = |y: usize, z: usize| {
+                    let begin = (z * sides[1] + y) * sides[0];
+                    [texels[begin + xs[0]], texels[begin + xs[1]]]
+                };
+                [between([line(ys[0], zs[0]), line(ys[1], zs[0])]), between([line(ys[0], zs[1]), line(ys[1], zs[1])])]
             }
             Texels::Asked(key, filaments) => {
                 let texels = ys.map(|y| Asked::new(key, [level, y]));

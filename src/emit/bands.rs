@@ -42,6 +42,8 @@ pub struct Life {
     pub time: f64,
     pub drift: f64,
     pub fade: f64,
+    /// Whether it begins and ends to fade without a kink.
+    pub eased: bool,
 }
 
 /// The generations of a band as a frame shows them: small numbers that f32 can hold, however large the scene's time is.
@@ -56,8 +58,9 @@ pub struct Band {
     pub generation: u32,
     /// The change of ln r that carries the pattern, per M.
     pub drift: f64,
-    /// `Life::fade`.
+    /// `Life::fade` and `Life::eased`.
     pub fade: f64,
+    pub eased: bool,
 }
 
 /// The bands of a frame's emitter.
@@ -108,14 +111,14 @@ impl Bands {
         let (first, count) = (first - 1, ((last - first + 3).max(1) as usize).min(MOST_BANDS));
         let mut bands = [Band::default(); MOST_BANDS];
         for (band, number) in bands.iter_mut().zip(first..).take(count) {
-            let Life { time: life, drift, fade } = life(BAND * (f64::from(number) + 0.5));
+            let Life { time: life, drift, fade, eased } = life(BAND * (f64::from(number) + 0.5));
             let spacing = life / (1.0 + fade);
             // Bands do not all renew themselves at once.
             let begin = f64::from(mix(seed.wrapping_add(mix(number as u32)))) / 4_294_967_296.0;
             let age = (time + begin * spacing).rem_euclid(spacing);
             let births = ((time - age) / spacing + begin).round();
             let generation = births.rem_euclid(4_294_967_296.0) as u32;
-            *band = Band { age, spacing, generation, drift, fade };
+            *band = Band { age, spacing, generation, drift, fade, eased };
         }
         Self { seed, first, count, bands }
     }
@@ -156,6 +159,7 @@ impl Band {
         let youngest = self.generation.wrapping_add(births as i32 as u32);
         let grown = young / (self.fade * self.spacing);
         if grown < 1.0 {
+            let grown = if self.eased { grown * grown * (3.0 - 2.0 * grown) } else { grown };
             let (new, old) = (FRAC_PI_2 * grown).sin_cos();
             Generations { young, youngest, count: 2, weights: [new, old] }
         } else {
@@ -188,7 +192,12 @@ mod tests {
     use super::*;
 
     fn bands(time: f64, seed: u64) -> Bands {
-        Bands::new([0.5, 3.5], seed, time, |ln_r| Life { time: (1.5 * ln_r).exp(), drift: 0.25, fade: GENERATION_FADE })
+        Bands::new([0.5, 3.5], seed, time, |ln_r| Life {
+            time: (1.5 * ln_r).exp(),
+            drift: 0.25,
+            fade: GENERATION_FADE,
+            eased: time > 0.0,
+        })
     }
 
     /// The variance of a sum of independent patterns, and so of one that fades into another.

@@ -25,6 +25,10 @@ pub(crate) const BLOCK_LAYERS: f64 = 4.0;
 pub(crate) const BLOCK_ROUNDING: f64 = 0.375;
 /// A piece is passed over if it sends less than this share of what it might.
 pub(crate) const LEAST_SEEN: f64 = 2e-5;
+/// Places that send less than this share of what an opaque one does are passed over, and those that would at a factor
+/// of `MOST_CLUMPED` on their density.
+const LEAST_PLACE: f64 = 1e-7;
+const MOST_CLUMPED: f64 = 1e3;
 /// Nearer to the axis (sin^2 th) and to the horizon (1 - r+ / r) parabolas do not tell azimuth and g.
 pub(crate) const ROUND_AXIS: f64 = 0.1;
 pub(crate) const ROUND_HORIZON: f64 = 0.1;
@@ -36,8 +40,9 @@ const MIDDLES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 struct Slow {
     /// The share of the grid's rows, cos th, turns, and ln of the temperature seen, T g, or of g of a power law.
     place: [f64; 4],
-    /// r; the column of matter of density 1 in the plane per share of the part, edges apart; and what of the logarithm
-    /// of the density falls off as the square of a length, but for a disk's height.
+    /// r; the column of the matter in the plane, or of a torus or halo at its densest, per share of the part, but for a
+    /// disk's edges; and what of the logarithm of the density falls off as the square of a length, but for a disk's
+    /// height.
     matter: [f64; 3],
 }
 
@@ -139,6 +144,7 @@ impl<'a, 'b> Layers<'a, 'b> {
         let [heat_power, heat_log] = self.clouds.heating_powers();
         let layer_size = 1.0 / (cloud.thickness.min(WIDEST) * FILAMENT_HEIGHT);
         let size = (end - begin) / count;
+        let (disk, shows) = (cloud.shape == Shape::Disk, glow.absorption.max(glow.brightness));
         let blocks = (count / BLOCK_LAYERS).round().max(1.0) as u32;
         for block in 0..blocks {
             if medium.depth > dark {
@@ -150,16 +156,22 @@ impl<'a, 'b> Layers<'a, 'b> {
             for t in MIDDLES.map(share) {
                 let at = |[a, b, c]: [f64; 3]| a + t * (b + t * c);
                 let (r, cos) = (at(r), at(cos));
-                let mut density = (-at(falls)).exp();
-                if r > cloud.outer {
-                    density = 0.0;
-                } else if cloud.shape == Shape::Disk {
-                    let fade =
-                        smooth_step(INNER_FADE, r / cloud.inner) * (1.0 - smooth_step(OUTER_FADE, r / cloud.outer));
-                    density = fade * (-0.5 * (cos / cloud.thickness).powi(2)).exp();
+                let falls = if disk { 0.5 * (cos / cloud.thickness).powi(2) } else { at(falls) };
+                let mut density = if r > cloud.outer { 0.0 } else { (-falls).exp() };
+                if disk {
+                    // No parabola tells of soft edges, of which a piece may hold the greater part.
+                    density *= smooth_step(INNER_FADE, r / cloud.inner);
+                    density *= 1.0 - smooth_step(OUTER_FADE, r / cloud.outer);
+                }
+                let column = (density * at(column) * size).max(0.0);
+                if column * shows * medium.through < LEAST_PLACE / MOST_CLUMPED {
+                    continue;
                 }
                 let factor = self.baked.factor([at(turns), at(row), cos * layer_size], level);
-                let column = (density * factor * at(column) * size).max(0.0);
+                let column = column * factor;
+                if column * shows * medium.through < LEAST_PLACE {
+                    continue;
+                }
                 let mut ln_seen = at(ln_seen);
                 let (depth, sent) = if glow.power_law {
                     let depth = glow.absorption * column * ((ABSORPTION_INDEX + glow.spectral_index) * ln_seen).exp();

@@ -21,6 +21,9 @@ pub(crate) const NEAR_AXIS: f64 = 0.01;
 /// Structure is so many times denser here and there than matter without it.
 pub(crate) const CLUMPED: f64 = 10.0;
 
+/// Structure has texels where Gaussians are at least this; beyond, the last ones go on.
+const LEAST_STRUCTURED: f64 = 1e-6;
+
 /// How exactly the matter along rays is summed.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
@@ -40,9 +43,9 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// For pixels: 1e-5 of a picture's peak.
+    /// For pixels: matter is thinner than `least` beyond 4.8 widths of its Gaussian.
     pub const PICTURE: Self =
-        Self { fineness: 1.0, beside_bends: 1.0, layers: true, alone: true, least: 1e-7, dark: 12.0 };
+        Self { fineness: 1.0, beside_bends: 1.0, layers: true, alone: true, least: 1e-5, dark: 12.0 };
     /// For pixels that show a number.
     pub const VIEW: Self = Self { dark: 300.0, alone: false, ..Self::PICTURE };
     /// For rays whose numbers count: 1e-8 of it.
@@ -100,6 +103,8 @@ impl VolumeMatter {
             FlowLaw::Outflow => Motion::Outflow { speed: volume.speed, base: cloud.inner },
         };
         let (reach, flow) = (cloud.reach(spin, least)?, Flow { motion, ..flow });
+        // However exactly it is summed, structure has the same texels.
+        let structured = cloud.reach(spin, LEAST_STRUCTURED)?;
         Some(Self {
             cloud,
             reach,
@@ -121,7 +126,7 @@ impl VolumeMatter {
                 [a, b, c, d, e, falls].map(|r| 1.0 / r)
             },
             least,
-            clouds: Clouds::new(volume, &cloud, &reach, &flow, spin, when),
+            clouds: Clouds::new(volume, &cloud, &structured, &flow, spin, when),
         })
     }
 

@@ -58,6 +58,7 @@ impl Turbulence {
             time: TAU * ((1.5 * ln_r).exp() + matter_spin) * LIFETIME,
             drift: 0.0,
             fade: GENERATION_FADE,
+            eased: false,
         };
         Some(Self {
             strength: disk.turbulence,

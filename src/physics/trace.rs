@@ -163,6 +163,10 @@ impl Part<'_> {
     /// The state at the share `x`, 0 .. 1, of the part's Mino time. A part may reach past infinity, where u < 0.
     pub fn at(&self, x: f64) -> State {
         let tau = self.begin + (self.end - self.begin) * x;
+        // The ends of steps are known.
+        if tau == 0.0 || tau == self.step {
+            return if tau == 0.0 { *self.from } else { *self.to };
+        }
         step(self.settings.method, self.constants, self.from, tau, self.settings.delay).0
     }
 

@@ -143,7 +143,14 @@ fn push_band(i: &mut Inputs) {
 }
 
 fn band(i: &Inputs) -> crate::emit::bands::Band {
-    crate::emit::bands::Band { age: i.x(0), spacing: i.x(1), generation: i.word(2), drift: 0.0, fade: GENERATION_FADE }
+    crate::emit::bands::Band {
+        age: i.x(0),
+        spacing: i.x(1),
+        generation: i.word(2),
+        drift: 0.0,
+        fade: GENERATION_FADE,
+        eased: false,
+    }
 }
 
 pub fn group() -> Group {

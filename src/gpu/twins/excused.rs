@@ -90,11 +90,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("emit/volumes", "begin_medium next_part add_part width_at cut_of weight_of add_piece coefficients_at", VOLUMES),
     ("emit/course", "step_course", VOLUMES),
     ("emit/bake", "bake_texels bake_grain half_bits filament_texel level_variances", BAKED),
-    (
-        "emit/layers",
-        "is_dark begin_layers next_step is_power_law slow_at slow_course places_at faded4 colour_of",
-        VOLUMES,
-    ),
+    ("emit/layers", "is_dark begin_layers next_step is_power_law slow_at slow_course places_at colour_of", VOLUMES),
     ("emit/layers", "add_alone add_block add_cells", VOLUMES),
     ("geodesic/rays", "on_part", NO_VOLUMES),
     ("lens/kerr_nodes", "on_part", NO_VOLUMES),
