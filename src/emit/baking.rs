@@ -80,7 +80,7 @@ pub struct BakeLevel {
 pub struct Baking {
     /// From the finest level that is baked to the last.
     pub levels: Vec<BakeLevel>,
-    /// [`ROW_GENERATIONS`] for each row of each level.
+    /// Four for each row of each level.
     pub generations: Vec<RowGeneration>,
     /// [`BakeLevel::heights`] for each row of each level.
     pub motions: Vec<RowMotion>,
