@@ -38,10 +38,10 @@ const LEAST_RATE: f64 = 0.25;
 const JET_STRETCH: f64 = 3.0;
 /// Shear, -d Omega / d ln r, in Omega: that of Keplerian orbits, for all, since it only tells how fine structure is.
 pub(crate) const SHEAR: f64 = 1.5;
-/// The share of a footprint that a texel may be. Where structure is finer than a pixel it crawls in films: with 0.8 what
-/// changes unevenly is 1.36 times what it is with 16 rays a pixel (`films_do_not_crawl` of tests/tracers/structure.rs).
-/// With 1 films crawl less, 1.24 times, but blur takes light from bright filaments: 1.4 % of a picture's parts, where
-/// 0.8 takes 0.8 % (`layers_leave_no_ripples`).
+/// The share of a footprint that a texel may be. Where structure is finer than a pixel it crawls in films: with 0.8
+/// what changes unevenly is 1.36 times what it is with 16 rays a pixel (`films_do_not_crawl` of
+/// tests/tracers/structure.rs). With 1 films crawl less, 1.24 times, but blur takes light from bright filaments: 1.4 %
+/// of a picture's parts, where 0.8 takes 0.8 % (`layers_leave_no_ripples`).
 pub(crate) const CLOUD_SHARP: f64 = 0.8;
 /// The share of a spacing of samples that a texel may be.
 pub(crate) const CLOUD_SPACED: f64 = 0.7;
@@ -62,8 +62,8 @@ pub(crate) const LEAST_WORTH: f64 = 0.1;
 /// along filaments (docs/numerics.md).
 pub(crate) const CLOUD_SPACING: f64 = 1.25;
 
-/// The share of a grid's rows that are told from each other: most generations are younger than the oldest, for which the
-/// rows are as fine as they are. With 0.78 bright filaments lost a tenth of their light.
+/// The share of a grid's rows that are told from each other: most generations are younger than the oldest, for which
+/// the rows are as fine as they are. With 0.78 bright filaments lost a tenth of their light.
 pub(crate) const CLOUD_SEEN: f64 = 0.47;
 /// The least share of its radius at which matter was that has come outwards since.
 pub(crate) const LEAST_CARRIED: f64 = 0.05;

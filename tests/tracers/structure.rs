@@ -85,8 +85,8 @@ fn structure_moves_and_nothing_pops() {
     }
 }
 
-/// A frame is a function of its time alone: in any order, and after a jump of a thousand million M and back, frames have
-/// the same bytes.
+/// A frame is a function of its time alone: in any order, and after a jump of a thousand million M and back, frames
+/// have the same bytes.
 #[test]
 fn frames_in_any_order_have_the_same_bytes() {
     for (tracer, mut renderer) in both() {
