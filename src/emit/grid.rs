@@ -14,6 +14,7 @@ pub(crate) const GRID_LEVELS: usize = GRID_LAST + 1;
 pub(crate) const MOST_ROWS: usize = 2048;
 /// Each level has whole rows.
 const ROW_STEP: usize = 1 << GRID_LAST;
+
 /// The sides of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
