@@ -213,8 +213,6 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("traced/fill", "fill_media", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("traced/fill", "fill_media", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("traced/fill", "block_key", "for (var i = 1u; i < 15u; i += 1u)", CONSTANT),
-    ("traced/fill", "interpolate", "for (var row = 0u; row < 4u; row += 1u)", CONSTANT),
-    ("traced/fill", "interpolate", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("traced/listed", "trace_listed", "for (var i = id.x; i < count; i += groups.x * OWN_GROUP)", LISTED),
     (
         "traced/pixels",

@@ -9,6 +9,7 @@
 #import geodesic/trace
 #import lens/kerr
 #import lens/kerr_record
+#import lens/media
 #import records/record
 #import shared/frame
 #import shared/math
@@ -34,15 +35,12 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
-// Scenes with emitters that have depth use no tables.
+// No matter is summed along these rays.
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
 }
 
-fn medium_before(k: u32) -> vec4<f32> {
-    return vec4<f32>(0.0, 0.0, 0.0, 1.0);
-}
-
 fn ray_record(id: vec2<u32>) -> Record {
+    set_media_pixel(id);
     var record = look_up(id);
     if lookup.cell.y < lens.outer_rows {
         record = with_looked_up_sky(record);

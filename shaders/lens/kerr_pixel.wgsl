@@ -3,10 +3,12 @@
 // lens/kerr_deferred.wgsl.
 
 #import lens/kerr_record
+#import lens/media
 #import records/record
 #import shared/pass
 
 fn ray_record(id: vec2<u32>) -> Record {
+    set_media_pixel(id);
     return look_up(id);
 }
 
@@ -16,11 +18,6 @@ fn with_sky(record: Record) -> Record {
 
 fn next_crossing() -> Crossing {
     return next_looked_up();
-}
-
-// Scenes with emitters that have depth use no tables.
-fn medium_before(k: u32) -> vec4<f32> {
-    return vec4<f32>(0.0, 0.0, 0.0, 1.0);
 }
 
 // Whether there is one only next_crossing finds out.

@@ -13,13 +13,14 @@
 #import shared/math
 #import shared/pass
 
-@group(1) @binding(0) var<uniform> lens: KerrLens;
+// Binding 0 is that of lens/media.wgsl.
+@group(1) @binding(1) var<uniform> lens: KerrLens;
 // First row: T = tan(R / 2) and dT/dchi at a node, and at the next, evenly in chi.
-@group(1) @binding(1) var kerr_curve: texture_2d<f32>;
-@group(1) @binding(2) var kerr_sky: texture_2d<f32>;
-@group(1) @binding(3) var kerr_crossings: texture_2d_array<f32>;
-@group(1) @binding(4) var kerr_flags: texture_2d<u32>;
-@group(1) @binding(5) var<storage, read_write> deferred: Deferred;
+@group(1) @binding(2) var kerr_curve: texture_2d<f32>;
+@group(1) @binding(3) var kerr_sky: texture_2d<f32>;
+@group(1) @binding(4) var kerr_crossings: texture_2d_array<f32>;
+@group(1) @binding(5) var kerr_flags: texture_2d<u32>;
+@group(1) @binding(6) var<storage, read_write> deferred: Deferred;
 
 // Pixels whose rays are to be integrated.
 struct Deferred {

@@ -7,18 +7,20 @@
 #import camera/projection
 #import geodesic/geodesic
 #import lens/axis
+#import lens/media
 #import lens/schwarzschild
 #import records/record
 #import shared/frame
 #import shared/math
 #import shared/pass
 
-@group(1) @binding(0) var<uniform> lens: SchwarzschildLens;
+// Binding 0 is that of lens/media.wgsl.
+@group(1) @binding(1) var<uniform> lens: SchwarzschildLens;
 // Filled by lens/schwarzschild_columns.wgsl, which has the layouts: the swept angle by (node, branch); u and the
 // delay's integral by (node, interval, branch).
-@group(1) @binding(1) var lens_swept: texture_2d<f32>;
-@group(1) @binding(2) var lens_u: texture_2d_array<f32>;
-@group(1) @binding(3) var lens_delay: texture_2d_array<f32>;
+@group(1) @binding(2) var lens_swept: texture_2d<f32>;
+@group(1) @binding(3) var lens_u: texture_2d_array<f32>;
+@group(1) @binding(4) var lens_delay: texture_2d_array<f32>;
 
 // The results of ray_record that the later calls for the same pixel use.
 struct Lookup {
@@ -55,6 +57,7 @@ struct Lookup {
 var<private> lookup: Lookup;
 
 fn ray_record(id: vec2<u32>) -> Record {
+    set_media_pixel(id);
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
     let seen = aberrate(view.look);
@@ -187,11 +190,6 @@ fn next_crossing() -> Crossing {
         complete(&crossing, lookup.first + PI * f32(crossing.order), there);
     }
     return crossing;
-}
-
-// Scenes with emitters that have depth use no tables.
-fn medium_before(k: u32) -> vec4<f32> {
-    return vec4<f32>(0.0, 0.0, 0.0, 1.0);
 }
 
 // Always true: whether there is a further crossing is known only after next_crossing has looked for it.

@@ -40,7 +40,8 @@ fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 {
     }
 }
 
-// The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve.
+// The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve, CURVE_SAMPLES or
+// fewer.
 var<private> samples: u32;
 
 const LANES: u32 = 64u;
@@ -157,6 +158,10 @@ fn list_kind() -> u32 {
     return select(1u, 0u, in_quarters());
 }
 
+fn strip_count() -> u32 {
+    return samples / 2u;
+}
+
 fn sample_index() -> u32 {
     return lane % samples;
 }
@@ -175,7 +180,7 @@ fn go_to_cell(id: vec2<u32>) -> f32 {
     let cell = strip_cell(strips);
     let outside = strip >= strips.captured;
     beside = beside_cell(strip > 0u && (strip > strips.captured || !outside),
-        strip + 1u < STRIPS && (strip + 1u < strips.captured || outside), 2u);
+        strip + 1u < strip_count() && (strip + 1u < strips.captured || outside), 2u);
     sample_shift = corrected_place(strips, cell) - 0.5;
     return cell.weight;
 }
@@ -289,10 +294,12 @@ fn strips_at(distance: f32, normal: vec2<f32>, slope: f32) -> Strips {
     let level = clamp(distance, -FARTHEST, FARTHEST);
     let reach = 0.5 * (abs(normal.x) + abs(normal.y));
     let range = vec2<f32>(spread(level - reach), spread(level + reach));
-    let inside = max(-range.x, 0.0) * CAPTURED_DENSITY;
-    let share = f32(STRIPS) * inside / max(inside + max(range.y, 0.0), 1e-20);
-    let both = clamp(u32(round(share)), FEWEST_STRIPS, STRIPS - FEWEST_STRIPS);
-    let captured = select(select(both, STRIPS, range.y <= 0.0), 0u, range.x >= 0.0);
+    let inside = max(-range.x, 0.0) * select(MATTER_CAPTURED_DENSITY, CAPTURED_DENSITY, samples == CURVE_SAMPLES);
+    let count = strip_count();
+    let share = f32(count) * inside / max(inside + max(range.y, 0.0), 1e-20);
+    let fewest = FEWEST_STRIPS * count / 16u;
+    let both = clamp(u32(round(share)), fewest, count - fewest);
+    let captured = select(select(both, count, range.y <= 0.0), 0u, range.x >= 0.0);
     return Strips(normal, level, slope, range, captured);
 }
 
@@ -301,7 +308,8 @@ fn strip_distance(strips: Strips, outside: bool, strip: f32) -> f32 {
     let captured = f32(strips.captured);
     let first = select(strips.range.x, max(strips.range.x, 0.0), outside);
     let last = select(min(strips.range.y, 0.0), strips.range.y, outside);
-    let share = select(strip / max(captured, 1.0), (strip - captured) / max(f32(STRIPS) - captured, 1.0), outside);
+    let outer = (strip - captured) / max(f32(strip_count()) - captured, 1.0);
+    let share = select(strip / max(captured, 1.0), outer, outside);
     return gathered(first + (last - first) * share);
 }
 

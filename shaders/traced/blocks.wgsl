@@ -7,7 +7,7 @@
 #import shared/pass
 #import traced/pixels
 
-@compute @workgroup_size(8, 16)
+@compute @workgroup_size(16, 8)
 fn trace_blocks(@builtin(global_invocation_id) id: vec3<u32>) {
     unknown_zero = id.z;
     // The rectangle's border has no matter of its own.

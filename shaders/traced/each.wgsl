@@ -5,7 +5,7 @@
 #import shared/pass
 #import traced/pixels
 
-@compute @workgroup_size(8, 16)
+@compute @workgroup_size(16, 8)
 fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     unknown_zero = id.z;
     if id.x >= pass_.size.x || id.y >= pass_.size.y {

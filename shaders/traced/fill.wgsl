@@ -20,9 +20,14 @@
 
 // Whether media are I_nu and optical depth.
 override SHOWS_DEPTH: bool = false;
+// Whether pixels have records here. Rays that are looked up have none, and of what they meet matter alone counts:
+// captured rays are all together, so that pixels amid rays of one fate have that fate.
+override OWN_RECORDS: bool = true;
 
 // The bits of TracedMeta's first word that tell which media a ray has: its fate, and the orders that are kept.
 const MEDIA_BITS: u32 = 0xffff0003u;
+// The bits of no ray.
+const NO_KEY: u32 = 0xffffffffu;
 
 // The texel of the first of the quad's blocks.
 var<private> first_texel: vec2<u32>;
@@ -47,7 +52,11 @@ fn fill_media(@builtin(global_invocation_id) id: vec3<u32>) {
     var told = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
         let at = pixel + corner_of(i);
-        if !outside_tile(at) && (textureLoad(record_meta, at + 1u, 0).x & MEDIA_BITS) == key {
+        var alike = key != NO_KEY;
+        if OWN_RECORDS {
+            alike = (textureLoad(record_meta, at + 1u, 0).x & MEDIA_BITS) == key;
+        }
+        if alike && !outside_tile(at) {
             told |= 1u << i;
         }
     }
@@ -91,51 +100,71 @@ fn block_key(first: vec2<i32>) -> u32 {
     let high = low + f32(3 * BLOCK);
     alike = alike && same_face(low.x, high.x) && has_look_direction(low) && has_look_direction(high)
         && has_look_direction(vec2<f32>(low.x, high.y)) && has_look_direction(vec2<f32>(high.x, low.y));
-    return select(0xffffffffu, key, alike);
+    return select(NO_KEY, key, alike);
+}
+
+// Two blocks in the middle of a row, and places on the line between them, a quarter of the way from either.
+struct Row {
+    b: vec4<f32>,
+    c: vec4<f32>,
+    left: vec4<f32>,
+    right: vec4<f32>,
+}
+
+fn row_of(row: u32, layer: u32) -> Row {
+    let b = textureLoad(block_disk, first_texel + vec2<u32>(1u, row), layer, 0);
+    let c = textureLoad(block_disk, first_texel + vec2<u32>(2u, row), layer, 0);
+    return Row(b, c, b * HALF_LINE.y + c * HALF_LINE.z, b * HALF_LINE.z + c * HALF_LINE.y);
+}
+
+// The cubics through the four blocks of a row, less its line, and how far the line may be off.
+struct RowCubics {
+    left: vec4<f32>,
+    right: vec4<f32>,
+    bend: vec4<f32>,
+}
+
+fn cubics_of(row: u32, layer: u32, nearest: Row) -> RowCubics {
+    let a = textureLoad(block_disk, first_texel + vec2<u32>(0u, row), layer, 0);
+    let d = textureLoad(block_disk, first_texel + vec2<u32>(3u, row), layer, 0);
+    let left = a * HALF_CUBIC.x + nearest.b * HALF_CUBIC.y + nearest.c * HALF_CUBIC.z + d * HALF_CUBIC.w;
+    let right = a * HALF_CUBIC.w + nearest.b * HALF_CUBIC.z + nearest.c * HALF_CUBIC.y + d * HALF_CUBIC.x;
+    return RowCubics(left - nearest.left, right - nearest.right, bend(a, nearest.b, nearest.c, d));
+}
+
+// The medium on a column of the quad from the lines and cubics of the rows, weighed from the column's nearer end.
+fn medium_of_column(lines: mat4x4<f32>, near: vec4<f32>, far: vec4<f32>) -> vec4<f32> {
+    let medium = lines * HALF_CUBIC + near * HALF_LINE.y + far * HALF_LINE.z;
+    // Cubics overshoot.
+    let least = max(medium, vec4<f32>(0.0));
+    return vec4<f32>(least.xyz, min(least.w, 1.0));
+}
+
+fn brightest(medium: vec4<f32>) -> f32 {
+    return max(max(medium.x, medium.y), medium.z);
 }
 
 // Finds the media of the quad's pixels in a layer of the blocks; whether they are even enough.
 fn interpolate(layer: u32) -> bool {
-    found = array<vec4<f32>, 4>();
-    // The middle two of each row, of the rows before.
-    var columns = array<vec4<f32>, 8>();
-    var across = vec4<f32>(0.0);
-    var darkest = vec2<f32>(1e30);
-    var least = vec2<f32>(1e30);
-    for (var row = 0u; row < 4u; row += 1u) {
-        let at = first_texel + vec2<u32>(0u, row);
-        let a = textureLoad(block_disk, at, layer, 0);
-        let b = textureLoad(block_disk, at + vec2<u32>(1u, 0u), layer, 0);
-        let c = textureLoad(block_disk, at + vec2<u32>(2u, 0u), layer, 0);
-        let d = textureLoad(block_disk, at + vec2<u32>(3u, 0u), layer, 0);
-        // On the line between the nearest, and what the cubic adds to that.
-        let left = b * HALF_LINE.y + c * HALF_LINE.z;
-        let right = b * HALF_LINE.z + c * HALF_LINE.y;
-        let left_more = a * HALF_CUBIC.x + b * HALF_CUBIC.y + c * HALF_CUBIC.z + d * HALF_CUBIC.w - left;
-        let right_more = a * HALF_CUBIC.w + b * HALF_CUBIC.z + c * HALF_CUBIC.y + d * HALF_CUBIC.x - right;
-        found[0] += HALF_CUBIC[row] * left + HALF_LINE[row] * left_more;
-        found[1] += HALF_CUBIC[row] * right + HALF_LINE[row] * right_more;
-        found[2] += HALF_CUBIC[3u - row] * left + HALF_LINE[3u - row] * left_more;
-        found[3] += HALF_CUBIC[3u - row] * right + HALF_LINE[3u - row] * right_more;
-        columns[2u * row] = b;
-        columns[2u * row + 1u] = c;
-        if row == 1u || row == 2u {
-            across = max(across, bend(a, b, c, d));
-            let brightest = vec2<f32>(max(max(b.x, b.y), b.z), max(max(c.x, c.y), c.z));
-            darkest = min(darkest, vec2<f32>(min(brightest.x, brightest.y), min(b.w, c.w)));
-            least = min(least, min(b.xy, c.xy));
-        }
-    }
-    let left = bend(columns[0], columns[2], columns[4], columns[6]);
-    let right = bend(columns[1], columns[3], columns[5], columns[7]);
-    let bends = across + max(left, right);
-    for (var i = 0u; i < 4u; i += 1u) {
-        // Cubics overshoot.
-        found[i] = max(found[i], vec4<f32>(0.0));
-        found[i].w = min(found[i].w, 1.0);
-    }
+    let first = row_of(0u, layer);
+    let second = row_of(1u, layer);
+    let third = row_of(2u, layer);
+    let fourth = row_of(3u, layer);
+    let above = cubics_of(1u, layer, second);
+    let below = cubics_of(2u, layer, third);
+    found[0] = medium_of_column(mat4x4<f32>(first.left, second.left, third.left, fourth.left), above.left, below.left);
+    found[1] =
+        medium_of_column(mat4x4<f32>(first.right, second.right, third.right, fourth.right), above.right, below.right);
+    found[2] = medium_of_column(mat4x4<f32>(fourth.left, third.left, second.left, first.left), below.left, above.left);
+    found[3] =
+        medium_of_column(mat4x4<f32>(fourth.right, third.right, second.right, first.right), below.right, above.right);
+    let left = bend(first.b, second.b, third.b, fourth.b);
+    let right = bend(first.c, second.c, third.c, fourth.c);
+    let bends = max(above.bend, below.bend) + max(left, right);
+    let least = min(min(second.b, second.c), min(third.b, third.c));
     if SHOWS_DEPTH {
-        return depth_is_even(bends.xy, least, frame.half_tolerance);
+        return depth_is_even(bends.xy, least.xy, frame.half_tolerance);
     }
-    return light_is_even(bends, darkest, frame.least_light, frame.half_tolerance);
+    let darkest = min(min(brightest(second.b), brightest(second.c)), min(brightest(third.b), brightest(third.c)));
+    return light_is_even(bends, vec2<f32>(darkest, least.w), frame.least_light, frame.half_tolerance);
 }

@@ -119,7 +119,9 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     disk_orders = 0u;
     beside_orders = 0u;
     plane_u = 0.0;
-    begin_medium(c, begin.state, 1u);
+    if PARTS {
+        begin_medium(c, begin.state, 1u);
+    }
     if OCCLUDED {
         set_occluder(place);
     }

@@ -11,8 +11,8 @@ use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
-    beside_quarter, covered, quarter_place,
+    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, MATTER_CURVE_SAMPLES, SEARCH_REACH,
+    SEARCH_STEPS, Strips, beside_quarter, covered, quarter_place,
 };
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -27,6 +27,8 @@ pub struct Refiner<'a> {
     opaque_u: Option<[f64; 2]>,
     lens: &'a Lens,
     level: CurveLevel,
+    /// Samples of a pixel that the critical curve runs through.
+    curve_samples: u32,
 }
 
 /// The records of a pixel's samples, and the samples beside each.
@@ -47,6 +49,7 @@ impl<'a> Refiner<'a> {
             opaque_u: emitters.opaque_u(),
             lens,
             level: CurveLevel::new(&lens.observer.frame),
+            curve_samples: if emitters.needs().parts { MATTER_CURVE_SAMPLES } else { CURVE_SAMPLES },
         }
     }
 
@@ -73,14 +76,14 @@ impl<'a> Refiner<'a> {
 
     fn light_of_strips(&self, shader: &Shader<'_>, at: [f64; 2]) -> [f64; 4] {
         let level = LevelAbout::new(self.lens, &self.level, at);
-        let (strips, slope) = level.strips();
+        let (strips, slope) = level.strips(self.curve_samples);
         let mut records = ArrayVec::<Record, { CURVE_SAMPLES as usize }>::new();
         let mut places = [([0.0; 2], 0.0); CURVE_SAMPLES as usize];
-        for (place, index) in places.iter_mut().zip(0..) {
+        for (place, index) in places.iter_mut().zip(0..self.curve_samples) {
             let cell = strips.cell(index);
             let distance = level.at(strips.foot(&cell).map(|c| c - 0.5)) / slope;
             *place = (place_about(at, strips.corrected(&cell, distance)), cell.weight);
-            records.push(self.sample(place.0, CURVE_SAMPLES));
+            records.push(self.sample(place.0, self.curve_samples));
         }
         let beside = |index| strips.beside(index);
         let samples = Samples { records: &records, beside: &beside };
@@ -184,8 +187,8 @@ impl<'a> LevelAbout<'a> {
         self.level.at(self.lens.observer.aberrate(look).0)
     }
 
-    /// The strips of the pixel, and the change of the level in a pixel across the curve.
-    pub(crate) fn strips(&self) -> (Strips, f64) {
+    /// The strips of the pixel for so many samples, and the change of the level in a pixel across the curve.
+    pub(crate) fn strips(&self, samples: u32) -> (Strips, f64) {
         let change = [[LEVEL_STEP, 0.0], [0.0, LEVEL_STEP]]
             .map(|[x, y]| (self.at([x, y]) - self.at([-x, -y])) / (2.0 * LEVEL_STEP));
         let steepness = change[0].hypot(change[1]).max(f64::MIN_POSITIVE);
@@ -193,16 +196,16 @@ impl<'a> LevelAbout<'a> {
         let here = along(0.0);
         let step = -here / steepness;
         if step.abs() >= FARTHEST {
-            return (Strips::new(-step, change), steepness);
+            return (Strips::new(-step, change, samples), steepness);
         }
         // Nearly everywhere one step of Newton's method does.
         let rest = along(step) / steepness;
         if step.abs() < SEARCH_REACH && rest.abs() <= EVEN_LEVEL {
-            return (Strips::new(rest - step, change), steepness);
+            return (Strips::new(rest - step, change, samples), steepness);
         }
         let (mut low, mut high) = ([-SEARCH_REACH, along(-SEARCH_REACH)], [SEARCH_REACH, along(SEARCH_REACH)]);
         if !(low[1] < 0.0 && high[1] > 0.0) {
-            return (Strips::new(here / steepness, change), steepness);
+            return (Strips::new(here / steepness, change, samples), steepness);
         }
         if here > 0.0 {
             high = [0.0, here]
@@ -225,7 +228,7 @@ impl<'a> LevelAbout<'a> {
             }
         }
         let slope = (along(found + LEVEL_STEP) - along(found - LEVEL_STEP)) / (2.0 * LEVEL_STEP);
-        (Strips::new(-found, change), slope.max(f64::MIN_POSITIVE))
+        (Strips::new(-found, change, samples), slope.max(f64::MIN_POSITIVE))
     }
 }
 

@@ -45,10 +45,18 @@ impl Scene {
     /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an
     /// observer at `frame`.
     pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_threshold: KerrThreshold) -> Lensing {
+        match self.emitters().needs().parts {
+            true => Lensing::Traced,
+            false => self.lensing_of_sky(frame, pixels, kerr_threshold),
+        }
+    }
+
+    /// [`Self::lensing`] of a frame whose matter with depth, if it has any, is found by other rays.
+    pub fn lensing_of_sky(&self, frame: &LocalFrame, pixels: u64, kerr_threshold: KerrThreshold) -> Lensing {
         let emitters = self.emitters();
         let needs = emitters.needs();
         // METRIC shows places where no disk is; tables end before. They hold no steps, and no headings.
-        if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts || needs.headings {
+        if self.quality.method != Method::Auto || self.view == View::Metric || needs.headings {
             return Lensing::Traced;
         }
         let work = pixels.saturating_mul(self.quality.samples_per_pixel.into());

@@ -6,7 +6,7 @@ use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
 use crate::random::runs_all;
 use crate::volumes::one_of_each;
 use bhr::image::PixelFormat;
-use bhr::scene::{Camera, Disk, HotSpot, Projection, Region, Scene, Sky, View, Volume, VolumeResolution};
+use bhr::scene::{Camera, Disk, HotSpot, LensTables, Projection, Region, Scene, Sky, View, Volume, VolumeResolution};
 use glam::DVec3;
 
 fn outside(distance: f64, elevation: f64, tan: f64) -> Camera {
@@ -133,6 +133,38 @@ fn the_tracers_agree() {
             let most = if coarse { one.len() / 25 } else { one.len() / share };
             assert!(far <= most, "{name}, {what}: {far} of {}", one.len());
         }
+    }
+}
+
+/// Where nothing shines in the plane, pixels look up what is behind the matter of the blocks: as they trace it, without
+/// and with spin, in pictures of several samples, in frames with a border, in views, and in parts with the bytes of the
+/// whole.
+#[test]
+fn the_sky_behind_blocks_is_looked_up() {
+    let mut gpu = gpu();
+    let named = |name: &str| scenes().into_iter().find(|(found, _)| *found == name).expect("a scene").1;
+    let mut still = named("soft disk");
+    (still.hole.spin, still.quality.samples_per_pixel) = (0.0, 2);
+    let depth = Scene { view: View::OpticalDepth, ..named("torus") };
+    let all = [
+        ("without spin, two samples", still),
+        ("a fisheye", named("fisheye")),
+        ("structure", named("turbulent torus")),
+        ("optical depth", depth),
+    ];
+    let size = [160, 90];
+    for (name, scene) in all {
+        let [traced, looked_up] = [LensTables::Never, LensTables::Always].map(|tables| {
+            gpu.scene = half(&scene);
+            gpu.scene.quality.lens_tables = tables;
+            let found = picture(&mut gpu, PixelFormat::Rgba8Srgb, size, None, false);
+            (found, gpu.stats().steps)
+        });
+        assert!(looked_up.1 < traced.1 / 4, "{name}: {} steps of {}", looked_up.1, traced.1);
+        let far = traced.0.iter().zip(&looked_up.0).filter(|(one, other)| one.abs_diff(**other) > 2).count();
+        println!("{name}: {far} of {}, {} steps of {}", traced.0.len(), looked_up.1, traced.1);
+        assert!(far <= traced.0.len() / 500, "{name}: {far} of {}", traced.0.len());
+        assert!(looked_up.0 == tiled(&mut gpu, PixelFormat::Rgba8Srgb, size), "{name}: parts");
     }
 }
 

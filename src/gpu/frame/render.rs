@@ -22,6 +22,7 @@ use crate::gpu::frame::submission::under_way::Submission;
 use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::variant::{PixelTarget, RecordMaker};
 use crate::scene::Scene;
+use crate::scene::refine::{CURVE_SAMPLES, MATTER_CURVE_SAMPLES};
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
 use std::collections::VecDeque;
 
@@ -206,6 +207,7 @@ impl GpuTracer {
             delivery,
             handed: None,
             samples,
+            curve_samples: if setup.variants.shade.volumes { MATTER_CURVE_SAMPLES } else { CURVE_SAMPLES },
             projection,
             source,
             steps,
@@ -283,6 +285,7 @@ fn cost_of_pixel(scene: &Scene, setup: &Setup, beside: Option<&BesideSetup>, pac
     // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
     // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
     let steps_of = |setup: &Setup, in_kerr| match setup.record_setup.source.maker {
+        _ if setup.record_setup.half => scene.expected_steps(),
         RecordMaker::Traced => scene.expected_steps(),
         RecordMaker::Schwarzschild => 2,
         RecordMaker::Kerr | RecordMaker::KerrDeferred => in_kerr,

@@ -139,9 +139,10 @@ fn all() -> Vec<(&'static str, String)> {
         CURVE_REACH: f32 = refine::CURVE_REACH;
         FAST_TURN: f32 = refine::FAST_TURN;
         TURN: f32 = refine::TURN;
-        STRIPS: u32 = refine::STRIPS;
+        CURVE_SAMPLES: u32 = refine::CURVE_SAMPLES;
         NARROWEST: f32 = refine::NARROWEST;
         CAPTURED_DENSITY: f32 = refine::CAPTURED_DENSITY;
+        MATTER_CAPTURED_DENSITY: f32 = refine::MATTER_CAPTURED_DENSITY;
         FEWEST_STRIPS: u32 = refine::FEWEST_STRIPS;
         FARTHEST: f32 = refine::FARTHEST;
         BENT: f32 = refine::BENT;

@@ -6,10 +6,11 @@ use super::choices::{Choice, Values, Variant, readers};
 use super::sizes::{LEVEL_COLUMNS, SKY_PARTS};
 use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, bake_slots, edge_slots,
-    output_slots, pixel_slots, refine_slots, shade_slots, sum_slots,
+    output_slots, pixel_slots, refine_slots, sample_slots, shade_slots, sum_slots,
 };
 use super::variant::{
-    FilmVariant, GROUP, OutputPlaces, PixelTarget, RecordMaker, RecordSource, ShadeVariant, StoredFormat, TraceVariant,
+    FilmVariant, GROUP, OutputPlaces, PixelTarget, RecordMaker, RecordSource, ShadeVariant, StoredFormat, TRACE_GROUP,
+    TraceVariant,
 };
 use super::wgsl;
 use crate::error::Result;
@@ -217,7 +218,8 @@ impl KernelKind {
             Self::ShadeSample(source) => vec![shade_slots(), source.slots(), sum_slots(), edge_slots()],
             Self::ShadeOnly(source, target) => vec![shade_slots(), source.slots(), target.slots(), edge_slots()],
             Self::Refine(source, target) => {
-                vec![refine_slots(), source.slots(), target.map_or_else(sum_slots, PixelTarget::slots), edge_slots()]
+                let target = target.map_or_else(sum_slots, PixelTarget::slots);
+                vec![refine_slots(), sample_slots(source), target, edge_slots()]
             }
             Self::Develop(target, glare) => {
                 let light = match glare {
@@ -266,6 +268,7 @@ impl KernelKind {
         match self {
             Self::ShadeOnly(_, target) | Self::Develop(target, _) => target.group(),
             Self::SkyLevel(_) => [LEVEL_COLUMNS, 1],
+            Self::Pixels | Self::Blocks => TRACE_GROUP,
             _ => GROUP,
         }
     }

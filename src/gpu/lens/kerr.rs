@@ -186,7 +186,7 @@ impl KerrTables {
         self.kept.clear();
     }
 
-    /// Group 1 of a shading kernel.
+    /// Group 1 of a shading kernel, after the media.
     pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
         let parts = self.kept.first().zip(self.deferred.as_ref());
         let (resources, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;

@@ -29,6 +29,8 @@ pub struct RecordSetup {
     pub half: bool,
     /// Crossings that a record holds at most.
     pub crossings: u32,
+    /// The fewest layers that an array of textures has.
+    pub least_layers: u32,
     pub observer: LocalFrame,
     pub contents: KerrContents,
 }
@@ -42,8 +44,14 @@ pub struct RecordStore {
     kerr: KerrTables,
 }
 
-/// The passes that make the records of a tile, or the tables that they are looked up in.
-pub enum RecordStages {
+/// The passes that make the records of a tile, or the tables that they are looked up in, and those that give pixels
+/// their media at half resolution.
+pub struct RecordStages {
+    maker: MakerStages,
+    half: Option<HalfStages>,
+}
+
+enum MakerStages {
     Traced(TraceStages),
     /// Before the frame's first tile, if the tables are stale.
     Schwarzschild(Option<SchwarzschildStages>),
@@ -53,19 +61,24 @@ pub enum RecordStages {
 impl RecordSetup {
     /// The layers in which traced records keep crossings and, behind those, the media before each and behind the last.
     fn layers(&self) -> u32 {
-        self.crossings + if self.variant.matter.is_some() { self.crossings + 1 } else { 0 }
+        let media = if self.variant.matter.is_some() { self.crossings + 1 } else { 0 };
+        (self.crossings + media).max(self.least_layers)
     }
 
     /// Bytes of a tile's pixel on the device.
     pub fn bytes_per_pixel(&self) -> u64 {
-        match self.source.maker {
-            RecordMaker::Traced => {
-                let texels = TEXEL * (2 + u64::from(self.layers()));
-                if self.half { texels + texels.div_ceil(4) + HalfBlocks::BYTES_PER_PIXEL } else { texels }
-            }
-            RecordMaker::Schwarzschild => 0,
-            RecordMaker::Kerr | RecordMaker::KerrDeferred => KerrTables::BYTES_PER_PIXEL,
-        }
+        let texels = TEXEL * (2 + u64::from(self.layers()));
+        let media = if self.half { TEXEL } else { 0 };
+        let own = match self.source.maker {
+            RecordMaker::Traced => texels,
+            RecordMaker::Schwarzschild => media,
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => media + KerrTables::BYTES_PER_PIXEL,
+        };
+        if self.half { own + texels.div_ceil(4) + HalfBlocks::BYTES_PER_PIXEL } else { own }
+    }
+
+    fn is_traced(&self) -> bool {
+        self.source.maker == RecordMaker::Traced
     }
 
     /// How the rays of pixels are traced before shading.
@@ -73,13 +86,18 @@ impl RecordSetup {
         TraceVariant { matter: self.variant.matter.filter(|_| !self.half), ..self.variant }
     }
 
-    /// The kernels that make traced records.
-    pub fn trace_keys(&self) -> Vec<KernelKey> {
-        let mut keys = vec![KernelKey::new(KernelKind::Pixels, &[&self.pixel_variant()]), KernelKind::Count.into()];
-        if self.half {
-            keys.extend(half::keys(self.variant));
-        }
-        keys
+    /// The kernels that make records, or the tables that they are looked up in.
+    pub fn keys(&self) -> Vec<KernelKey> {
+        let tables = |kinds: [KernelKind; 2]| kinds.map(|kind| KernelKey::new(kind, &[&self.source]));
+        let made = match self.source.maker {
+            RecordMaker::Traced => {
+                [KernelKey::new(KernelKind::Pixels, &[&self.pixel_variant()]), KernelKind::Count.into()]
+            }
+            RecordMaker::Schwarzschild => tables([KernelKind::SchwarzschildEnds, KernelKind::SchwarzschildColumns]),
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => tables([KernelKind::KerrNodes, KernelKind::KerrFlags]),
+        };
+        let half = self.half.then(|| half::keys(self.variant, self.is_traced()));
+        made.into_iter().chain(half.into_iter().flatten()).collect()
     }
 
     /// Whether both are looked up in the same tables.
@@ -92,6 +110,14 @@ impl RecordSetup {
             }
     }
 
+    /// The source of the records of samples that are taken of a pixel anew. Matter is summed along integrated rays.
+    pub fn sample_source(&self) -> RecordSource {
+        match self.variant.matter {
+            Some(_) => RecordSource { maker: RecordMaker::Traced, delay: self.variant.delay, ..self.source },
+            None => self.deferred_source().unwrap_or(self.source),
+        }
+    }
+
     /// The source of the records of those pixels that this one leaves pending.
     pub fn deferred_source(&self) -> Option<RecordSource> {
         let deferred = RecordSource { maker: RecordMaker::KerrDeferred, ..self.source };
@@ -102,14 +128,16 @@ impl RecordSetup {
 impl RecordStore {
     /// Makes room for a tile.
     pub fn prepare(&mut self, device: &Device, record_setup: &RecordSetup, tile: [u32; 2]) -> Result<()> {
+        let layers = record_setup.layers();
         match record_setup.source.maker {
-            RecordMaker::Traced => {
-                self.traced.prepare(device, tile.map(|side| side + 2), record_setup.layers())?;
-                if record_setup.half { self.half.prepare(device, tile, record_setup.layers()) } else { Ok(()) }
-            }
-            RecordMaker::Schwarzschild => Ok(()),
-            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.prepare(device, tile),
+            RecordMaker::Traced => self.traced.prepare(device, tile.map(|side| side + 2), layers)?,
+            RecordMaker::Schwarzschild => {}
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.prepare(device, tile)?,
         }
+        if !record_setup.is_traced() {
+            self.half.prepare_media(device, record_setup.half.then_some(tile), record_setup.least_layers)?;
+        }
+        if record_setup.half { self.half.prepare(device, tile, layers) } else { Ok(()) }
     }
 
     /// The stages that `record_setup` asks for; tables are brought up to its observer.
@@ -121,18 +149,19 @@ impl RecordStore {
         shared: &Shared<'_>,
     ) -> Result<RecordStages> {
         let frame = shared.frame.clone();
-        Ok(match record_setup.source.maker {
+        let pixels = if record_setup.is_traced() { Some(self.traced.resources()?) } else { None };
+        let half = || self.half.stages(device, kernels, record_setup.variant, pixels.as_ref(), shared);
+        let half = if record_setup.half { Some(half()?) } else { None };
+        let maker = match record_setup.source.maker {
             RecordMaker::Traced => {
                 let pixels = self.traced.resources()?;
-                let half = || self.half.stages(device, kernels, record_setup.variant, &pixels, shared);
-                let half = if record_setup.half { Some(half()?) } else { None };
                 let trace = trace_stages(device, kernels, record_setup.pixel_variant(), &pixels, shared)?;
-                RecordStages::Traced(TraceStages { half, ..trace })
+                MakerStages::Traced(trace)
             }
             // Only lenses of one kind are kept: both together could take half as much again.
             RecordMaker::Schwarzschild => {
                 self.kerr.release();
-                RecordStages::Schwarzschild(self.schwarzschild.update(
+                MakerStages::Schwarzschild(self.schwarzschild.update(
                     device,
                     kernels,
                     &record_setup.observer,
@@ -142,7 +171,7 @@ impl RecordStore {
             }
             RecordMaker::Kerr | RecordMaker::KerrDeferred => {
                 self.schwarzschild = SchwarzschildTables::default();
-                RecordStages::Kerr(self.kerr.update(
+                MakerStages::Kerr(self.kerr.update(
                     device,
                     kernels,
                     &record_setup.observer,
@@ -150,16 +179,23 @@ impl RecordStore {
                     frame,
                 )?)
             }
-        })
+        };
+        Ok(RecordStages { maker, half })
     }
 
     /// Group 1 of a kernel that reads records.
     pub fn group(&self, source: RecordSource) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        match source.maker {
-            RecordMaker::Traced => self.traced.group(),
-            RecordMaker::Schwarzschild => self.schwarzschild.group(),
-            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.group(),
-        }
+        let tables = match source.maker {
+            RecordMaker::Traced => return self.traced.group(),
+            RecordMaker::Schwarzschild => self.schwarzschild.group()?,
+            RecordMaker::Kerr | RecordMaker::KerrDeferred => self.kerr.group()?,
+        };
+        Ok([vec![self.half.media()?], tables].concat())
+    }
+
+    /// Group 1 of a kernel that takes samples of a pixel.
+    pub fn sample_group(&self, source: RecordSource) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        if source.maker == RecordMaker::Traced { Ok(vec![]) } else { self.group(source) }
     }
 
     /// Before a submission. What will hold the steps of its rays, `step_sum` or a buffer that begins with them;
@@ -170,10 +206,10 @@ impl RecordStore {
         step_sum: &'a Buffer,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Option<&'a Buffer> {
+        self.half.reset(encoder);
         match source.maker {
             RecordMaker::Traced => {
                 encoder.clear_buffer(step_sum, 0, None);
-                self.half.reset(encoder);
                 Some(step_sum)
             }
             RecordMaker::Schwarzschild => None,
@@ -194,29 +230,31 @@ impl RecordStore {
 impl RecordStages {
     /// Whether the tables of a lens are made for the frame.
     pub fn make_tables(&self) -> bool {
-        match self {
-            Self::Traced(_) => false,
-            Self::Schwarzschild(stages) => stages.is_some(),
-            Self::Kerr(stages) => stages.as_ref().is_some_and(KerrStages::make_tables),
+        match &self.maker {
+            MakerStages::Traced(_) => false,
+            MakerStages::Schwarzschild(stages) => stages.is_some(),
+            MakerStages::Kerr(stages) => stages.as_ref().is_some_and(KerrStages::make_tables),
         }
     }
 
     /// `begins`: these are the frame's first.
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
-        match self {
-            Self::Traced(stages) => stages.encode(pass, offset, tile),
-            Self::Schwarzschild(Some(stages)) if begins => stages.encode(pass),
-            Self::Kerr(Some(stages)) if begins => stages.encode(pass),
-            Self::Schwarzschild(_) | Self::Kerr(_) => {}
+        match &self.maker {
+            MakerStages::Traced(stages) => stages.encode(pass, offset, tile),
+            MakerStages::Schwarzschild(Some(stages)) if begins => stages.encode(pass),
+            MakerStages::Kerr(Some(stages)) if begins => stages.encode(pass),
+            MakerStages::Schwarzschild(_) | MakerStages::Kerr(_) => {}
+        }
+        if let Some(half) = &self.half {
+            half.encode(pass, offset, tile);
         }
     }
 }
 
 /// The stages that make the records of a tile before they are shaded.
-pub struct TraceStages {
+struct TraceStages {
     trace: Stage,
     count: Stage,
-    half: Option<HalfStages>,
 }
 
 /// The stages that trace pixels into `textures`.
@@ -234,18 +272,14 @@ fn trace_stages(
             .get(KernelKey::new(KernelKind::Pixels, &[&variant]))?
             .stage(device, &[&pixel_group(textures, shared)])?,
         count: kernels.get(KernelKind::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
-        half: None,
     })
 }
 
 impl TraceStages {
     /// Traces a tile of `width` x `height` pixels and its margin.
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, [width, height]: [u32; 2]) {
+    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, [width, height]: [u32; 2]) {
         self.trace.dispatch(pass, offset, [width + 2, height + 2]);
         self.count.dispatch(pass, offset, [(width + 2).div_ceil(COUNT_RUN), height + 2]);
-        if let Some(half) = &self.half {
-            half.encode(pass, offset, [width, height]);
-        }
     }
 }
 

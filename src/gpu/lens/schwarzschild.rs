@@ -138,7 +138,7 @@ impl SchwarzschildTables {
         self.kept.clear();
     }
 
-    /// Group 1 of a shading kernel.
+    /// Group 1 of a shading kernel, after the media.
     pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
         let resources = self.kept.first().ok_or_else(|| Error::internal("a lens without tables"))?;
         let tables =

@@ -7,7 +7,8 @@ use super::{Group, ROUNDING, SAME, twin};
 use crate::cpu::refine::LevelAbout;
 use crate::physics::lens::critical::{CurveLevel, potential_minimum};
 use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, NARROWEST, Strips, beside_quarter, covered, quarter_place, share_below, spread,
+    CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, NARROWEST, Strips, beside_quarter, covered, quarter_place,
+    share_below, spread,
 };
 use glam::DVec2;
 
@@ -80,7 +81,7 @@ fn push_near_curve(i: &mut Inputs, view: &View) -> bool {
 
 fn strips_of(i: &Inputs) -> (Strips, f64) {
     let lens = &view(i).lens;
-    LevelAbout::new(lens, &CurveLevel::new(&lens.observer.frame), [i.x(1), i.x(2)]).strips()
+    LevelAbout::new(lens, &CurveLevel::new(&lens.observer.frame), [i.x(1), i.x(2)]).strips(CURVE_SAMPLES)
 }
 
 pub fn group() -> Group {
@@ -119,17 +120,20 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "strips_at strip_distance strip_cell sample_index",
-            "samples = 32u; lane = word(0u);
+            "strips_at strip_distance strip_cell sample_index strip_count",
+            "samples = word(4u); lane = word(0u);
              let cell = strip_cell(strips_at(in1(3u), normalize(in2(1u)), 1.0));
              out2(cell.place); out1(cell.distance); out1(cell.weight);",
             |i| {
                 i.pick(64);
                 slope(i);
                 i.even(-3.0, 3.0);
+                let samples = [CURVE_SAMPLES, MATTER_CURVE_SAMPLES][i.random.below(2) as usize];
+                i.push_word(samples);
             },
             |i, o| {
-                let cell = Strips::new(i.x(3), [i.x(1), i.x(2)]).cell(i.word(0) % CURVE_SAMPLES);
+                let samples = i.word(4);
+                let cell = Strips::new(i.x(3), [i.x(1), i.x(2)], samples).cell(i.word(0) % samples);
                 o.all(cell.place, 1.0);
                 o.near(cell.distance, 1.0);
                 o.near(cell.weight, 1.0);
@@ -188,7 +192,7 @@ pub fn group() -> Group {
         twin(
             file,
             "strips_of level_at go_to_pixel",
-            "enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
+            "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
              out1(strips.level); out1(strips.slope); out2(strips.normal);",
             |i| {
                 loop {

@@ -150,9 +150,10 @@ impl FrameBuffers {
             let record_setup = &setup.record_setup;
             let refine = |kernels: &Kernels| {
                 let film = (!variants.several_samples).then_some(variants.film);
-                let source = record_setup.deferred_source().unwrap_or(record_setup.source);
+                let source = record_setup.sample_source();
                 let shared = [&shared[..], &structure].concat();
-                let groups = [&shared[..], &records, target];
+                let samples = self.record_store.sample_group(source)?;
+                let groups = [&shared[..], &samples, target];
                 let groups = if film.is_some() { &groups[..2] } else { &groups };
                 RefineStage::new(
                     device,

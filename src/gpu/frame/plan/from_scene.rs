@@ -125,15 +125,22 @@ impl Planner<'_> {
         let pattern = emitters.needs().places;
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let maker = match scene.lensing(&observer, pixels, KerrThreshold::GPU) {
+        let plane_u = emitters.plane_u();
+        // Blocks tell the matter along the rays of half resolution, and lenses what is behind.
+        let half = scene.half_resolution().is_some();
+        let lensing = if half && plane_u.is_none() { Scene::lensing_of_sky } else { Scene::lensing };
+        let maker = match lensing(scene, &observer, pixels, KerrThreshold::GPU) {
             Lensing::Traced => RecordMaker::Traced,
             Lensing::Schwarzschild => RecordMaker::Schwarzschild,
             Lensing::Kerr => RecordMaker::Kerr,
         };
         let hidden = settings.opaque_u.is_some() && emitters.hides_all();
-        let plane_u = emitters.plane_u();
-        // Where nothing shines in the plane no crossing is kept.
-        let crossings = if hidden || plane_u.is_none() { 1 } else { settings.max_crossings as u32 };
+        let crossings = match plane_u {
+            // Where nothing shines in the plane no crossing is kept.
+            None => 0,
+            Some(_) if hidden => 1,
+            Some(_) => settings.max_crossings as u32,
+        };
         let inside = observer.r <= 2.0;
         RecordSetup {
             source: RecordSource { delay, pattern, moving, maker },
@@ -143,9 +150,10 @@ impl Planner<'_> {
                 projection,
                 ..variant(scene, settings, inside)
             },
-            half: maker == RecordMaker::Traced && scene.half_resolution().is_some(),
+            half,
+            crossings,
             // wgpu makes no array texture of one layer on GL.
-            crossings: if self.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
+            least_layers: if self.info.backend == Backend::Gl { 2 } else { 1 },
             observer,
             contents: KerrContents {
                 orders: if plane_u.is_some() { settings.max_crossings as u32 } else { 0 },

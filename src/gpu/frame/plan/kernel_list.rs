@@ -5,20 +5,13 @@
 use super::setup::Setup;
 use crate::film::bloom::Bloom;
 use crate::gpu::kernel::key::{KernelKey, KernelKind};
-use crate::gpu::kernel::variant::{OutputPlaces, RecordMaker};
+use crate::gpu::kernel::variant::OutputPlaces;
 
 impl Setup {
     /// The kernels that make records, or the tables that they are looked up in, and the structure of matter.
     pub(in crate::gpu) fn record_kernels(&self) -> Vec<KernelKey> {
-        let source = self.record_setup.source;
         let bake = self.clouds.is_some().then(|| KernelKind::Bake.into());
-        let tables = |kinds: [KernelKind; 2]| kinds.map(|kind| KernelKey::new(kind, &[&source])).to_vec();
-        let made = match source.maker {
-            RecordMaker::Traced => self.record_setup.trace_keys(),
-            RecordMaker::Schwarzschild => tables([KernelKind::SchwarzschildEnds, KernelKind::SchwarzschildColumns]),
-            RecordMaker::Kerr | RecordMaker::KerrDeferred => tables([KernelKind::KerrNodes, KernelKind::KerrFlags]),
-        };
-        bake.into_iter().chain(made).collect()
+        bake.into_iter().chain(self.record_setup.keys()).collect()
     }
 
     /// Every kernel of the frame; those that take longest to make come last.
@@ -34,8 +27,8 @@ impl Setup {
         keys.push(shade(record_setup.source));
         keys.extend(deferred.map(shade));
         if variants.shade.refines {
-            let traced = (deferred.unwrap_or(record_setup.source), record_setup.variant);
-            keys.push(KernelKey::refine(traced, variants.shade, film));
+            let samples = (record_setup.sample_source(), record_setup.variant);
+            keys.push(KernelKey::refine(samples, variants.shade, film));
         }
         if film.is_none() {
             keys.push(KernelKey::develop(variants.film, None));

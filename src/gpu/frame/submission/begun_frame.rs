@@ -35,6 +35,8 @@ pub struct BegunFrame {
     /// The targets that the host shares, and the semaphores that go with it; as far as they are not submitted yet.
     pub(in crate::gpu) handed: Option<Handed>,
     pub(in crate::gpu) samples: u32,
+    /// Samples of a pixel that the critical curve runs through.
+    pub(in crate::gpu) curve_samples: u32,
     pub(in crate::gpu) projection: Projection,
     pub(in crate::gpu) source: RecordSource,
     pub(in crate::gpu) steps: Steps,

@@ -10,7 +10,6 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::plan::steps::Step;
 use crate::gpu::frame::resources::frame_buffers::FrameBuffers;
 use crate::gpu::frame::uniforms::frame::{PassUniform, pass_of};
-use crate::scene::refine::CURVE_SAMPLES;
 use crate::tracer::Tile;
 
 /// The cells of a step that gathers none.
@@ -38,7 +37,7 @@ fn pass_uniforms(device: &Device, frame: &BegunFrame, step: &Step) -> impl Itera
     // With bloom this may be another tile than the shaded one.
     let developed = (step.develops.unwrap_or(step.shades), 0, 0);
     let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
-    let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
+    let twice = |pass: PassUniform| [pass, PassUniform { refined: frame.curve_samples, ..pass }];
     // The ray of an output goes through the pixel's centre.
     let centred = pass_of(&frame.request, step.shades, (0, 1), frame.projection, 0, step.light_origin);
     [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice)).chain([centred])

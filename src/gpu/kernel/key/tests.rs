@@ -7,6 +7,7 @@ use super::super::wgsl::shader_sources;
 use super::KernelKind;
 use crate::gpu::device::specialise::Parsed;
 use crate::random::mix;
+use crate::scene::Projection;
 use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga::Expression;
 use wgpu::naga::compact::{KeepUnused, compact};
@@ -193,6 +194,8 @@ fn choices_that_are_not_folded_make_a_difference() {
             *value = match choice {
                 Choice::SHOWS_LIGHT | Choice::PLANE | Choice::FOOTPRINTS => 1,
                 Choice::SHOWS_DEPTH | Choice::ALONE => 0,
+                // Some kernels ask of projections only where they end.
+                Choice::PROJECTION => Projection::Fisheye as u32,
                 _ => *value,
             };
         }
