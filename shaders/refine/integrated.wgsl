@@ -14,6 +14,7 @@
 #import shared/frame
 #import shared/math
 #import shared/pass
+#requires var samples: u32
 
 // u, azimuth, delay and u' by order; u is 0 where there is none.
 var<private> kept_crossings: array<vec4<f32>, CROSSINGS_KEPT>;
@@ -75,7 +76,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
     if PARTS {
-        begin_medium(begin.c, begin.state, pass_.refined);
+        begin_medium(begin.c, begin.state, samples);
     }
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
         begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,

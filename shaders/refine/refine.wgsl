@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Kernel: shades `pass_.refined` samples of each pixel of a list of records/edges.wgsl, and hands their mean to
-// take_light in place of the pixel's light. Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are.
-// Knows no way to make records.
+// Kernel: shades several samples of each pixel of the lists of records/edges.wgsl, and hands their mean to take_light
+// in place of the pixel's light. Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way
+// to make records.
+//
+// Two rows of workgroups take the lists of EDGE_CURVE and EDGE_DISK, the longer rays first, so that others fill the
+// time until the last of them ends. One row takes the pixels that the second of those listed.
 
 #import constants
 #import camera/critical
@@ -40,6 +43,8 @@ fn baked_factor(index: u32, place: vec3<f32>, level: f32) -> f32 {
     }
 }
 
+// The list of records/edges.wgsl that this workgroup goes over, LIST_*.
+var<private> list: u32;
 // The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve, CURVE_SAMPLES or
 // fewer.
 var<private> samples: u32;
@@ -56,7 +61,8 @@ var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
 var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
 var<workgroup> lane_sky: array<vec4<f32>, LANES>;
 var<workgroup> lane_light: array<vec4<f32>, LANES>;
-var<workgroup> listed: u32;
+// The numbers of the first pixel of the workgroup's list and of the one behind its last.
+var<workgroup> listed: vec2<u32>;
 
 var<private> lane: u32;
 // The lanes of the samples before and after this one along the strip or row, and before and after across; NO_LANE
@@ -91,23 +97,23 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     @builtin(local_invocation_index) i: u32) {
     unknown_zero = group.z;
     lane = i;
-    samples = not_inlined(pass_.refined);
+    list = select(select(LIST_CURVE, LIST_DISK, group.y == 1u), LIST_RAGGED, groups.y == 1u);
+    samples = not_inlined(select(pass_.curve_samples, EDGE_SAMPLES, list == LIST_DISK));
     whole_plane = true;
     if i == 0u {
-        let limit = arrayLength(&edges.pixels);
-        listed = min(atomicLoad(&edges.counts[list_place(list_kind())]), limit);
+        listed = listed_pixels(list);
     }
-    let count = workgroupUniformLoad(&listed);
+    let ends = workgroupUniformLoad(&listed);
     let pixels = LANES / samples;
-    for (var first = group.x * pixels; first < count; first += groups.x * pixels) {
-        refine_sample(first + i / samples, count);
+    for (var first = ends.x + group.x * pixels; first < ends.y; first += groups.x * pixels) {
+        refine_sample(first + i / samples, ends.y);
     }
 }
 
 // The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and writes
 // nothing.
-fn refine_sample(entry: u32, count: u32) {
-    let id = listed_pixel(list_kind(), min(entry, count - 1u));
+fn refine_sample(entry: u32, end: u32) {
+    let id = listed_pixel(list, min(entry, end - 1u));
     let weight = go_to_cell(id);
     var record = ray_record(id);
     if record.fate == FATE_ESCAPED {
@@ -138,10 +144,10 @@ fn refine_sample(entry: u32, count: u32) {
     }
     lane_light[lane] = weight * shade_record(id, record);
     workgroupBarrier();
-    if entry < count && sample_index() == 0u {
+    if entry < end && sample_index() == 0u {
         if in_quarters() && is_ragged() {
             // A ragged pixel needs the samples of EDGE_CURVE, which are taken later.
-            note_edges(id, EDGE_CURVE);
+            note_ragged(id);
         } else {
             take_light(id, mean_light());
         }
@@ -151,11 +157,6 @@ fn refine_sample(entry: u32, count: u32) {
 
 fn in_quarters() -> bool {
     return samples == EDGE_SAMPLES;
-}
-
-// The list of records/edges.wgsl that this dispatch goes over.
-fn list_kind() -> u32 {
-    return select(1u, 0u, in_quarters());
 }
 
 fn strip_count() -> u32 {

@@ -17,8 +17,8 @@ struct Pass {
     first: u32,
     // The number of this sample among those of the submission.
     slot: u32,
-    // Samples that refine/refine.wgsl takes of a pixel.
-    refined: u32,
+    // Samples that refine/refine.wgsl takes of a pixel that the critical curve runs through.
+    curve_samples: u32,
     // Where in the full frame the texture of a frame's light begins (film/light.wgsl).
     light_origin: vec2<i32>,
     // The tile's first pixel in the image that the frame is written to (film/screen.wgsl).

@@ -29,24 +29,49 @@ const MEDIA_BITS: u32 = 0xffff0003u;
 // The bits of no ray.
 const NO_KEY: u32 = 0xffffffffu;
 
+// Pixels that the workgroup lists, and the place of the first of them in the list.
+var<workgroup> listed: atomic<u32>;
+var<workgroup> first_listed: u32;
 // The texel of the first of the quad's blocks.
 var<private> first_texel: vec2<u32>;
 // The media of the quad's four pixels, row by row.
 var<private> found: array<vec4<f32>, 4>;
 
 @compute @workgroup_size(8, 16)
-fn fill_media(@builtin(global_invocation_id) id: vec3<u32>) {
+fn fill_media(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) i: u32) {
     unknown_zero = id.z;
+    if i == 0u {
+        atomicStore(&listed, 0u);
+    }
+    workgroupBarrier();
     let begin = pass_.origin + 1;
     let quad = ((begin - 1) >> vec2<u32>(1u)) + vec2<i32>(id.xy);
-    let first = quad - 1;
-    first_texel = vec2<u32>(first - vec2<i32>(first_block(begin.x), first_block(begin.y)));
     let corner = 2 * quad + 1 - begin;
-    if any(corner >= vec2<i32>(pass_.size) - 2) {
-        return;
+    var untold = 0u;
+    if all(corner < vec2<i32>(pass_.size) - 2) {
+        first_texel = vec2<u32>(quad - 1 - vec2<i32>(first_block(begin.x), first_block(begin.y)));
+        untold = fill_quad(vec2<u32>(corner), quad - 1);
     }
-    // One of them may lie before the tile: then it has a very large number.
-    let pixel = vec2<u32>(corner);
+    // One number in memory that all workgroups count up would be what takes most of the time.
+    let count = countOneBits(untold);
+    let place = atomicAdd(&listed, count);
+    workgroupBarrier();
+    if i == 0u {
+        first_listed = take_own_rays(atomicLoad(&listed));
+    }
+    var next = workgroupUniformLoad(&first_listed) + place;
+    for (var k = 0u; k < 4u; k += 1u) {
+        if (untold & (1u << k)) != 0u {
+            note_own_ray(next, vec2<u32>(corner) + corner_of(k));
+            next += 1u;
+        }
+    }
+}
+
+// Gives the pixels of a quad their media, `pixel` the first of them and `first` the first of its blocks. Those that
+// the blocks do not tell, a bit each.
+fn fill_quad(pixel: vec2<u32>, first: vec2<i32>) -> u32 {
+    // A pixel may lie before the tile: then it has a very large number.
     let key = block_key(first);
     // The pixels that are told, a bit each.
     var told = 0u;
@@ -70,12 +95,14 @@ fn fill_media(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
     }
+    var untold = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
         let at = pixel + corner_of(i);
         if (told & (1u << i)) == 0u && !outside_tile(at) && has_look_direction(pixel_place(at)) {
-            note_own_ray(at);
+            untold |= 1u << i;
         }
     }
+    return untold;
 }
 
 // The place of pixel `i` of a quad in it.

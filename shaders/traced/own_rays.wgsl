@@ -13,8 +13,12 @@ struct OwnRays {
 
 @group(1) @binding(0) var<storage, read_write> own_rays: OwnRays;
 
-fn note_own_ray(id: vec2<u32>) {
-    let i = atomicAdd(&own_rays.counts[pass_.slot], 1u);
+// Room for so many pixels: the place of the first.
+fn take_own_rays(count: u32) -> u32 {
+    return atomicAdd(&own_rays.counts[pass_.slot], count);
+}
+
+fn note_own_ray(i: u32, id: vec2<u32>) {
     own_rays.pixels[i] = id.x | (id.y << 16u);
 }
 

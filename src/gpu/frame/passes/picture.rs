@@ -222,11 +222,11 @@ impl FrameBuffers {
 }
 
 impl ShadeStages {
-    /// `offsets`: of the sample's two `PassUniform`s.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
-        self.consumer.dispatch(pass, offsets[0], tile);
+    /// `offset`: of the sample's `PassUniform`.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
+        self.consumer.dispatch(pass, offset, tile);
         if let Some(refining) = &self.refining {
-            refining.dispatch(pass, offsets, tile);
+            refining.dispatch(pass, offset, tile);
         }
     }
 }
@@ -250,17 +250,17 @@ impl Stages {
     ) {
         let tile = [step.shades.width, step.shades.height];
         pass.set_bind_group(3, &self.edges, &[]);
-        for (sample, slot) in step.samples.clone().zip((1..).step_by(2)) {
+        for (sample, slot) in step.samples.clone().zip(1..) {
             let offset = slot * stride;
             self.records.encode(pass, begins && slot == 1, offset, tile);
             match &self.shading {
                 Shading::Nothing => {}
                 Shading::Only(shades) => {
                     pass.set_bind_group(2, output, &[]);
-                    shades.dispatch(pass, [offset, offset + stride], tile);
+                    shades.dispatch(pass, offset, tile);
                 }
                 Shading::Samples { shade, .. } => {
-                    shade[sample as usize % 2].dispatch(pass, [offset, offset + stride], tile);
+                    shade[sample as usize % 2].dispatch(pass, offset, tile);
                 }
             }
         }

@@ -35,12 +35,12 @@ impl RefineStage {
         Ok(Self { stage, software, summed: variant.matter.map(|_| PIXELS_PER_GROUP) })
     }
 
-    /// After the pixels of `tile` have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
-    /// the `PassUniform`s with `EDGE_SAMPLES` and with `CURVE_SAMPLES`: some of the disk's edges turn out to need the
-    /// critical curve's samples.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
-        for offset in offsets {
-            self.stage.run(pass, Some(offset), [list_groups(tile, self.software, self.summed), 1]);
-        }
+    /// After the pixels of `tile` have been shaded; group 3 is set, and 2, if that is for the caller. `offset`: of the
+    /// sample's `PassUniform`.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
+        let groups = list_groups(tile, self.software, self.summed);
+        // Both lists, and then the pixels of the disk's edges that turned out to need the critical curve's samples.
+        self.stage.run(pass, Some(offset), [groups, 2]);
+        self.stage.run(pass, Some(offset), [groups, 1]);
     }
 }

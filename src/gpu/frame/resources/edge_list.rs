@@ -6,8 +6,8 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::plan::tiles::MAX_BATCH;
 use crate::gpu::lens::pixel_list::PixelList;
 
-/// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
-const HEAD: u64 = 8 * MAX_BATCH as u64;
+/// `Edges` of records/edges.wgsl: bytes before the pixels, three counts for each sample of a submission.
+const HEAD: u64 = 12 * MAX_BATCH as u64;
 
 /// The list; it grows and stays.
 pub struct EdgeList(PixelList);

@@ -42,8 +42,8 @@ pub struct FixedBuffers {
     pub film: CachedUniform,
     /// Film settings for light that has already been exposed.
     pub film_of_exposed: CachedUniform,
-    /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
-    /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`, and one for outputs; `uniform_stride` apart.
+    /// One `PassUniform` for what is developed in frames with bloom, one for each sample of a batch, and one for
+    /// outputs; `uniform_stride` apart.
     pub passes: CachedUniform,
     pub step_sum: Buffer,
 }
@@ -128,7 +128,7 @@ impl FrameBuffers {
                 passes: CachedUniform::new(
                     device,
                     "passes",
-                    u64::from(2 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                    u64::from(2 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
                 )?,
                 step_sum: step_sum(device)?,
             });

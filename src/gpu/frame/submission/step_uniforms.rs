@@ -15,12 +15,12 @@ use crate::tracer::Tile;
 /// The cells of a step that gathers none.
 const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 
-/// The place of the `PassUniform` of a step's outputs: behind that of development and two for each sample.
+/// The place of the `PassUniform` of a step's outputs: behind those of development and of each sample.
 pub fn place_of_outputs(step: &Step) -> usize {
-    1 + 2 * step.samples.len()
+    1 + step.samples.len()
 }
 
-/// The `PassUniform`s of a step in their order: of what is developed, of each sample two, of outputs.
+/// The `PassUniform`s of a step in their order: of what is developed, of each sample, of outputs.
 fn pass_uniforms(device: &Device, frame: &BegunFrame, step: &Step) -> impl Iterator<Item = PassUniform> {
     let pixel_size = frame.request.format.bytes_per_pixel();
     let of = move |(tile, sample, i)| {
@@ -32,15 +32,14 @@ fn pass_uniforms(device: &Device, frame: &BegunFrame, step: &Step) -> impl Itera
             }
             delivery => [0, delivery.pitch(tile, pixel_size) / 4],
         };
-        PassUniform { pixels_first, pixels_row, ..pass }
+        PassUniform { curve_samples: frame.curve_samples, pixels_first, pixels_row, ..pass }
     };
     // With bloom this may be another tile than the shaded one.
     let developed = (step.develops.unwrap_or(step.shades), 0, 0);
     let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
-    let twice = |pass: PassUniform| [pass, PassUniform { refined: frame.curve_samples, ..pass }];
     // The ray of an output goes through the pixel's centre.
     let centred = pass_of(&frame.request, step.shades, (0, 1), frame.projection, 0, step.light_origin);
-    [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice)).chain([centred])
+    [of(developed)].into_iter().chain(shaded.map(of)).chain([centred])
 }
 
 impl FrameBuffers {

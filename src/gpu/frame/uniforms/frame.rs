@@ -18,7 +18,7 @@ use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
-use crate::scene::refine::{DiskEdges, EDGE_SAMPLES};
+use crate::scene::refine::{CURVE_SAMPLES, DiskEdges};
 use crate::scene::{EmissionLaw, Projection, Scene};
 use crate::sky::least_patch;
 use crate::tracer::{FrameRequest, Tile};
@@ -117,8 +117,7 @@ pub struct PassUniform {
     pub weight: f32,
     pub first: u32,
     pub slot: u32,
-    /// `EDGE_SAMPLES` or `CURVE_SAMPLES`.
-    pub refined: u32,
+    pub curve_samples: u32,
     pub light_origin: [i32; 2],
     pub image_origin: [u32; 2],
     pub pixels_first: u32,
@@ -137,7 +136,7 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, shown_edges,
         least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x, occluder_origin,
         hole_mass, occluder_lensed, bands, depth_u, matter_count, matter_delay, matter);
-    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin,
+    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, curve_samples, light_origin,
         image_origin, pixels_first, pixels_row);
     [frame, pass]
 }
@@ -304,7 +303,7 @@ pub fn pass_of(
         weight: 1.0 / samples as f32,
         first: u32::from(sample == 0),
         slot,
-        refined: EDGE_SAMPLES,
+        curve_samples: CURVE_SAMPLES,
         light_origin: light_origin.map(|v| v as i32),
         image_origin: [tile.x, tile.y],
         pixels_first: 0,
