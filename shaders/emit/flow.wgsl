@@ -101,6 +101,10 @@ fn flow_velocity(c: Constants, at: Place, matter: Matter) -> vec2<f32> {
 }
 
 fn keplerian(c: Constants, a: f32, at: Place, isco: f32, sub_keplerian: f32, infall: f32) -> vec2<f32> {
+    if sub_keplerian == 1.0 && infall == 0.0 && at.r >= isco {
+        let around = 1.0 / (at.r * sqrt(at.r) + a);
+        return vec2<f32>((around - place_omega(a, at)) * at.around / at.lapse, 0.0);
+    }
     let orbit = max(at.r, isco);
     let root = sqrt(orbit);
     let l = sub_keplerian * (orbit * orbit - 2.0 * a * root + a * a) / (orbit * root - 2.0 * root + a);

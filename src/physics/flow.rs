@@ -207,6 +207,12 @@ impl Flow {
 
 /// `Motion::Keplerian`, towards +ph.
 pub fn keplerian(a: f64, at: &Place, isco: f64, sub_keplerian: f64, infall: f64) -> Velocity {
+    if sub_keplerian == 1.0 && infall == 0.0 && at.r >= isco {
+        // Circular geodesics: Omega is that of the plane (Bardeen, Press & Teukolsky 1972, equation 2.16). Most matter
+        // has it, at half the cost of what follows.
+        let around = 1.0 / (at.r * at.r.sqrt() + a);
+        return Velocity { around: (around - at.omega(a)) * at.around / at.lapse, radial: 0.0 };
+    }
     let orbit = at.r.max(isco);
     let root = orbit.sqrt();
     let l = sub_keplerian * (orbit * orbit - 2.0 * a * root + a * a) / (orbit * root - 2.0 * root + a);
