@@ -141,13 +141,15 @@ impl Baked {
     fn trilinear(&self, level: usize, [turns, row, layer]: [f64; 3]) -> f32 {
         let sides = self.grid.sides(level);
         let between = |at: f64| {
-            let whole = at.floor();
-            (whole as i64, (at - whole) as f32)
+            // Many a processor's `floor` is a call.
+            let towards_zero = at as i64;
+            let whole = if at < towards_zero as f64 { towards_zero.wrapping_sub(1) } else { towards_zero };
+            (whole, (at - whole as f64) as f32)
         };
         let around = |share: f64, side: usize| {
             let (whole, part) = between(share * side as f64 - 0.5);
             // Sides are powers of two.
-            ([whole, whole + 1].map(|i| i as usize & (side - 1)), part)
+            ([whole, whole.wrapping_add(1)].map(|i| i as usize & (side - 1)), part)
         };
         let (xs, right) = around(turns, sides[0]);
         let (zs, up) = around(layer, sides[2]);

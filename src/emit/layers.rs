@@ -15,7 +15,7 @@ use super::matter::VolumeMatter;
 use super::medium::{Medium, own_share};
 use super::shape::{INNER_FADE, OUTER_FADE, WIDEST, smooth_step};
 use super::volume::Shape;
-use crate::physics::blackbody::{fitted_colour, fitted_luminance};
+use crate::physics::blackbody::{fitted_colour, fitted_luminance, rounded_exp};
 use crate::physics::flow::{Place, ZamoLight};
 use crate::physics::trace::Part;
 
@@ -145,6 +145,13 @@ impl<'a, 'b> Layers<'a, 'b> {
         let layer_size = 1.0 / (cloud.thickness.min(WIDEST) * FILAMENT_HEIGHT);
         let size = (end - begin) / count;
         let (disk, shows) = (cloud.shape == Shape::Disk, glow.absorption.max(glow.brightness));
+        let per_thickness = 1.0 / cloud.thickness;
+        // No parabola tells of soft edges, of which a piece may hold the greater part. The parabola of r may pass its
+        // three places by a little.
+        let [nearest, farthest] =
+            [f64::min, f64::max].map(|end| slow.iter().map(|s| s.matter[0]).fold(slow[0].matter[0], end));
+        let begins = disk && nearest < 1.05 * INNER_FADE[1] * cloud.inner;
+        let ends = disk && farthest > 0.95 * OUTER_FADE[0] * cloud.outer;
         let blocks = (count / BLOCK_LAYERS).round().max(1.0) as u32;
         for block in 0..blocks {
             if medium.depth > dark {
@@ -156,11 +163,12 @@ impl<'a, 'b> Layers<'a, 'b> {
             for t in MIDDLES.map(share) {
                 let at = |[a, b, c]: [f64; 3]| a + t * (b + t * c);
                 let (r, cos) = (at(r), at(cos));
-                let falls = if disk { 0.5 * (cos / cloud.thickness).powi(2) } else { at(falls) };
-                let mut density = if r > cloud.outer { 0.0 } else { (-falls).exp() };
-                if disk {
-                    // No parabola tells of soft edges, of which a piece may hold the greater part.
+                let falls = if disk { 0.5 * (cos * per_thickness).powi(2) } else { at(falls) };
+                let mut density = if r > cloud.outer { 0.0 } else { rounded_exp(-falls) };
+                if begins {
                     density *= smooth_step(INNER_FADE, r / cloud.inner);
+                }
+                if ends {
                     density *= 1.0 - smooth_step(OUTER_FADE, r / cloud.outer);
                 }
                 let column = (density * at(column) * size).max(0.0);
@@ -173,19 +181,20 @@ impl<'a, 'b> Layers<'a, 'b> {
                     continue;
                 }
                 let mut ln_seen = at(ln_seen);
-                let (depth, sent) = if glow.power_law {
+                let (depth, opaque) = if glow.power_law {
                     let depth = glow.absorption * column * ((ABSORPTION_INDEX + glow.spectral_index) * ln_seen).exp();
                     let sent = glow.brightness * column * ((3.0 + glow.spectral_index) * ln_seen).exp();
-                    (depth, sent * own_share(depth))
+                    (depth, sent)
                 } else {
-                    ln_seen += heat_power * factor.ln() + heat_log;
-                    let depth = glow.absorption * column;
-                    (depth, glow.brightness * fitted_luminance(ln_seen, glow.log_reference) * -(-depth).exp_m1())
+                    ln_seen += heat_power * f64::from((factor as f32).ln()) + heat_log;
+                    (glow.absorption * column, glow.brightness * fitted_luminance(ln_seen, glow.log_reference))
                 };
-                let sent = sent * medium.through;
+                let left = (-depth).exp();
+                let share = if glow.power_law { own_share(depth) } else { 1.0 - left };
+                let sent = opaque * share * medium.through;
                 light += sent;
                 heat += sent * ln_seen;
-                medium.through *= (-depth).exp();
+                medium.through *= left;
                 medium.depth += depth;
             }
             let colour = match glow.power_law {

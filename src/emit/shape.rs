@@ -97,7 +97,7 @@ impl Stretch {
 
     /// Its length, M, as if space were flat.
     pub fn length(&self) -> f64 {
-        f64::hypot(1.0 / self.u[0] - 1.0 / self.u[1], self.swept * self.middle()[0])
+        ((1.0 / self.u[0] - 1.0 / self.u[1]).powi(2) + (self.swept * self.middle()[0]).powi(2)).sqrt()
     }
 }
 

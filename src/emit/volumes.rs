@@ -412,7 +412,7 @@ impl Sum<'_, '_> {
     fn stretch(&mut self, [from, to]: [&Border; 2], fineness: f64, medium: &mut Medium) {
         let ([u, c], [v, d], run) = (from.at, to.at, to.share - from.share);
         let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * run };
-        let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
+        let of_volume = |v: &VolumeMatter| v.clouds.as_ref().map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
         let passed = self.volumes.volumes.iter().map(of_volume).collect::<Texels>();
         let width = |share: f64| from.footprint + (to.footprint - from.footprint) * share;
         let Some(cut) = self.volumes.cut(&stretch, &passed, width(0.5), medium.through) else { return };
