@@ -371,6 +371,7 @@ static void set_goal(BhrPresetOptions *options, const Viewer *v, const Settings 
     options->height = v->size[1];
     const double rate = s->rate > 0.0 ? s->rate : display_rate();
     options->frame_ms = rate > 0.0 ? fmax(1e-3, fmin(1000.0 / rate, 1e9)) : 0.0; /* 0: the library's */
+    options->may_halve = 1; /* the first thing that the governor gives up while the picture moves */
     if (s->frames != 0 && options->matter == BHR_PRESET_MATTER_AUTO) {
         options->matter = BHR_PRESET_MATTER_THIN; /* the same frames on every machine */
     }

@@ -1008,6 +1008,10 @@ typedef struct BhrPresetOptions {
     uint32_t height; /**< AUTO: their height, in pixels, 1 .. 1048576; 0 means the default, 1080. */
     /** AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16. */
     double frame_ms;
+    uint32_t measure_anew; /**< AUTO: 1 measures again, 0 (default) only what was not measured before. */
+    /** AUTO: 1 takes DEEP at half resolution where FULL is too slow, and sets BhrQuality.volume_resolution to what
+     * DEEP fits with; 0 (default) leaves that as it is. */
+    uint32_t may_halve;
 } BhrPresetOptions;
 
 /** Gives the scene a look, with the thin disk. A volume that bhr_set_preset_with set leaves with the look that it
@@ -1022,8 +1026,8 @@ BHR_NODISCARD BhrStatus bhr_preset_options_init(BhrPresetOptions *options, size_
  * defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
  *
  * THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about
- * half a second at most, and may choose otherwise on another machine, or when the machine is busy
- * (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0 */
+ * half a second at most, logs at INFO what it found and took, and may choose otherwise on another machine, or when the
+ * machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_preset_with(BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                             BhrPresetMatter *out_matter);
 

@@ -36,7 +36,7 @@ pub use shared::{HostSync, SharedOutput, Submits};
 
 pub use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, PASSES, Progress, StatsBoard, Tile, TileSink};
 pub use crate::tracers::adapters;
-pub use presets::MatterChoice;
+pub use presets::{FrameGoal, MatterChoice};
 
 /// How to make a [`Renderer`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,7 +68,7 @@ pub struct Renderer {
     /// How the pixels were made that hosts may have.
     made: MadeFrames,
     /// How long the presets' frames with depth take, as far as that was measured.
-    depth_costs: [Option<DepthCost>; Preset::COUNT],
+    depth_costs: [Vec<DepthCost>; Preset::COUNT],
     /// The threads for jobs, from the first job on.
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.

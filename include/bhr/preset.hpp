@@ -31,6 +31,8 @@ struct PresetOptions {
     std::uint32_t width;
     std::uint32_t height;
     double frame_ms;
+    std::uint32_t measure_anew;
+    std::uint32_t may_halve;
 
     PresetOptions() noexcept { detail::defaults(*this, bhr_preset_options_init); }
     BhrPresetOptions c() const noexcept { return detail::as_c<BhrPresetOptions>(*this); }

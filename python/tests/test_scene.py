@@ -76,6 +76,10 @@ def test_presets_with_depth(ctx):
     assert ctx.disk is not None and len(ctx.volumes) == 0
     assert ctx.set_preset_with(bhr.Preset.PHYSICAL, size=(8, 8), frame_ms=1e9) is bhr.PresetMatter.DEEP
     assert ctx.set_preset_with(bhr.Preset.PHYSICAL, size=(8192, 8192), frame_ms=0.001) is bhr.PresetMatter.THIN
+    assert ctx.set_preset_with(
+        bhr.Preset.PHYSICAL, size=(8, 8), frame_ms=1e9, measure_anew=True, may_halve=True
+    ) is bhr.PresetMatter.DEEP
+    assert ctx.quality.volume_resolution is bhr.VolumeResolution.FULL
     with pytest.raises(bhr.InvalidArgument, match="frame_ms"):
         ctx.set_preset_with(bhr.Preset.PHYSICAL, frame_ms=-1.0)
 

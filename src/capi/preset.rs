@@ -8,7 +8,7 @@ use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, Versioned};
 use crate::error::{Error, Number, Result};
-use crate::renderer::MatterChoice;
+use crate::renderer::{FrameGoal, MatterChoice};
 use crate::scene::{Preset, PresetMatter, Region};
 
 /// A named look: values for all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky, which
@@ -49,15 +49,28 @@ pub struct BhrPresetOptions {
     pub height: u32,
     /// AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16.
     pub frame_ms: f64,
+    /// AUTO: 1 measures again, 0 (default) only what was not measured before.
+    pub measure_anew: u32,
+    /// AUTO: 1 takes DEEP at half resolution where FULL is too slow, and sets BhrQuality.volume_resolution to what
+    /// DEEP fits with; 0 (default) leaves that as it is.
+    pub may_halve: u32,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrPresetOptions {
     const NAME: &'static str = "BhrPresetOptions";
-    const SIZES: &'static [usize] = &[24];
+    const SIZES: &'static [usize] = &[24, 32];
     fn defaults() -> Self {
         let [width, height] = DEFAULT_SIZE;
-        Self { struct_size: 0, matter: BHR_PRESET_MATTER_AUTO, width, height, frame_ms: DEFAULT_FRAME_MS }
+        Self {
+            struct_size: 0,
+            matter: BHR_PRESET_MATTER_AUTO,
+            width,
+            height,
+            frame_ms: DEFAULT_FRAME_MS,
+            measure_anew: 0,
+            may_halve: 0,
+        }
     }
 }
 
@@ -88,8 +101,15 @@ impl BhrPresetOptions {
                 Number(self.frame_ms)
             )));
         }
+        let flag = |name: &str, value: u32| match value {
+            0 | 1 => Ok(value == 1),
+            _ => Err(Error::argument(format!("options {name} is {value}; it must be 0 or 1"))),
+        };
+        let measure_anew = flag("measure_anew", self.measure_anew)?;
+        let may_halve = flag("may_halve", self.may_halve)?;
+        let goal = FrameGoal { pixels, ns: 1e6 * frame_ms, measure_anew, may_halve };
         match self.matter {
-            BHR_PRESET_MATTER_AUTO => Ok(MatterChoice::WithinNs { pixels, ns: 1e6 * frame_ms }),
+            BHR_PRESET_MATTER_AUTO => Ok(MatterChoice::Within(goal)),
             BHR_PRESET_MATTER_THIN => Ok(MatterChoice::This(PresetMatter::Thin)),
             BHR_PRESET_MATTER_DEEP => Ok(MatterChoice::This(PresetMatter::Deep)),
             value => {
@@ -135,8 +155,8 @@ pub unsafe extern "C" fn bhr_preset_options_init(options: *mut BhrPresetOptions,
 /// defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
 ///
 /// THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about
-/// half a second at most, and may choose otherwise on another machine, or when the machine is busy
-/// (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0
+/// half a second at most, logs at INFO what it found and took, and may choose otherwise on another machine, or when the
+/// machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_preset_with(
     context: *mut BhrContext,

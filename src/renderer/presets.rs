@@ -5,7 +5,7 @@
 use super::{Renderer, RunsOn};
 use crate::error::{ErrorKind, Result};
 use crate::image::PixelFormat;
-use crate::scene::{Preset, PresetMatter, Quality, Region, Scene};
+use crate::scene::{Preset, PresetMatter, Quality, Region, Scene, VolumeResolution};
 use crate::tracer::FrameRequest;
 use std::time::{Duration, Instant};
 
@@ -33,11 +33,20 @@ const SPIN: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MatterChoice {
     This(PresetMatter),
-    /// `Deep` where a frame of so many pixels takes at most so long.
-    WithinNs {
-        pixels: f64,
-        ns: f64,
-    },
+    /// `Deep` where a frame takes no longer than the goal.
+    Within(FrameGoal),
+}
+
+/// A time for frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameGoal {
+    pub pixels: f64,
+    pub ns: f64,
+    /// Whether it is measured again how long frames take.
+    pub measure_anew: bool,
+    /// Whether volumes may be summed at half resolution, where frames take longer otherwise. The scene's quality has
+    /// the resolution that was found then.
+    pub may_halve: bool,
 }
 
 /// How long a preset's frame with depth takes, for each sample of a pixel, at a quality.
@@ -53,29 +62,54 @@ impl Renderer {
     pub fn set_preset(&mut self, preset: Preset, choice: MatterChoice) -> Result<PresetMatter> {
         let matter = match choice {
             MatterChoice::This(matter) => matter,
-            MatterChoice::WithinNs { .. } if !preset.has_depth() => PresetMatter::Thin,
-            MatterChoice::WithinNs { pixels, ns } => {
-                let samples = f64::from(self.scene.quality.samples_per_pixel) * pixels;
-                if samples * self.depth_cost(preset)? <= ns { PresetMatter::Deep } else { PresetMatter::Thin }
-            }
+            MatterChoice::Within(_) if !preset.has_depth() => PresetMatter::Thin,
+            MatterChoice::Within(goal) => match self.resolution_within(preset, goal)? {
+                Some(resolution) => {
+                    self.scene.quality.volume_resolution = resolution;
+                    PresetMatter::Deep
+                }
+                None => PresetMatter::Thin,
+            },
         };
         Ok(preset.apply_with(matter, &mut self.scene))
     }
 
-    /// In ns for each sample of a pixel; measured once for each quality.
-    fn depth_cost(&mut self, preset: Preset) -> Result<f64> {
+    /// The resolution of volumes with which frames with depth take no longer than the goal, the scene's unless that is
+    /// to be chosen. `None`: they take longer.
+    fn resolution_within(&mut self, preset: Preset, goal: FrameGoal) -> Result<Option<VolumeResolution>> {
+        let own = [self.scene.quality.volume_resolution];
+        let resolutions: &[_] = if goal.may_halve { &[VolumeResolution::Full, VolumeResolution::Half] } else { &own };
+        for &resolution in resolutions {
+            let samples = f64::from(self.scene.quality.samples_per_pixel) * goal.pixels;
+            let ns = samples * self.depth_cost(preset, resolution, goal.measure_anew)?;
+            let (ms, most, fits) = (1e-6 * ns, 1e-6 * goal.ns, ns <= goal.ns);
+            let verdict = if fits { "it is taken" } else { "it is too slow" };
+            log::info!("{preset:?} with depth, {resolution:?} resolution: {ms:.3} ms a frame of {most:.3}: {verdict}");
+            if fits {
+                return Ok(Some(resolution));
+            }
+        }
+        Ok(None)
+    }
+
+    /// In ns for each sample of a pixel; measured once for each quality, or `anew`.
+    fn depth_cost(&mut self, preset: Preset, volume_resolution: VolumeResolution, anew: bool) -> Result<f64> {
         // Windows' alone is the scale, and samples are what the cost is of.
-        let quality = Quality { samples_per_pixel: 1, render_scale: 1.0, ..self.scene.quality };
-        let known = self.depth_costs[preset as usize].filter(|known| known.quality == quality);
-        if let Some(known) = known {
+        let quality = Quality { samples_per_pixel: 1, render_scale: 1.0, volume_resolution, ..self.scene.quality };
+        let known = &mut self.depth_costs[preset as usize];
+        known.retain(|known| !(anew && known.quality == quality));
+        if let Some(known) = known.iter().find(|known| known.quality == quality) {
             return Ok(known.ns);
         }
         let mut scene = Scene { quality, ..Scene::default() };
         scene.hole.spin = SPIN;
         preset.apply_with(PresetMatter::Deep, &mut scene);
         let ns = self.time_pixel(&scene)?;
-        log::info!("a frame of {preset:?} with depth takes {ns:.3} ns a pixel");
-        self.depth_costs[preset as usize] = Some(DepthCost { quality, ns });
+        let known = &mut self.depth_costs[preset as usize];
+        // One for each resolution of volumes, of one quality besides.
+        let others = Quality { volume_resolution, ..quality };
+        known.retain(|known| Quality { volume_resolution, ..known.quality } == others);
+        known.push(DepthCost { quality, ns });
         Ok(ns)
     }
 
@@ -150,7 +184,11 @@ mod tests {
     }
 
     fn within(ns: f64) -> MatterChoice {
-        MatterChoice::WithinNs { pixels: 640.0 * 360.0, ns }
+        MatterChoice::Within(goal(ns))
+    }
+
+    fn goal(ns: f64) -> FrameGoal {
+        FrameGoal { pixels: 640.0 * 360.0, ns, measure_anew: false, may_halve: false }
     }
 
     /// One measurement serves every goal, until the quality is another; frames for it are not counted.
@@ -159,17 +197,44 @@ mod tests {
         let mut renderer = on_cpu();
         assert_eq!(renderer.set_preset(Preset::Physical, within(1.0)).unwrap(), PresetMatter::Thin);
         assert!(renderer.scene.disk.is_some() && renderer.scene.volumes.is_empty());
-        let ns = renderer.depth_costs[Preset::Physical as usize].unwrap().ns;
+        let ns = renderer.depth_costs[Preset::Physical as usize][0].ns;
         assert!(ns > 10.0 && ns < 1e9, "{ns}");
         let fits = 640.0 * 360.0 * ns * 1.001;
         assert_eq!(renderer.set_preset(Preset::Physical, within(fits)).unwrap(), PresetMatter::Deep);
-        assert_eq!(renderer.depth_costs[Preset::Physical as usize].unwrap().ns, ns);
+        assert_eq!(renderer.depth_costs[Preset::Physical as usize][0].ns, ns);
         assert!(renderer.scene.disk.is_none() && renderer.scene.volumes.len() == 1);
         renderer.scene.quality.samples_per_pixel = 2;
         assert_eq!(renderer.set_preset(Preset::Physical, within(fits)).unwrap(), PresetMatter::Thin);
         assert_eq!(renderer.set_preset(Preset::Physical, within(2.0 * fits)).unwrap(), PresetMatter::Deep);
-        assert_eq!(renderer.depth_costs[Preset::Physical as usize].unwrap().ns, ns);
+        assert_eq!(renderer.depth_costs[Preset::Physical as usize][0].ns, ns);
         assert_eq!(renderer.stats().frame_index, 0);
+    }
+
+    /// Half resolution is taken where full does not fit and that may be; both are measured once, and again if asked.
+    #[test]
+    fn half_resolution_is_taken_where_full_does_not_fit() {
+        use VolumeResolution::{Full, Half};
+        let mut renderer = on_cpu();
+        let choose = |renderer: &mut Renderer, ns: f64, may_halve: bool, measure_anew: bool| {
+            let goal = FrameGoal { may_halve, measure_anew, ..goal(ns) };
+            let matter = renderer.set_preset(Preset::Cinematic, MatterChoice::Within(goal)).unwrap();
+            (matter, renderer.scene.quality.volume_resolution)
+        };
+        assert_eq!(choose(&mut renderer, 1.0, true, false), (PresetMatter::Thin, Full));
+        // A small frame of a slow machine may take longer in blocks.
+        let costs = &mut renderer.depth_costs[Preset::Cinematic as usize];
+        let found = costs.iter().map(|cost| cost.quality.volume_resolution).collect::<Vec<_>>();
+        assert_eq!(found, [Full, Half]);
+        costs.iter_mut().zip([2.0, 1.0]).for_each(|(cost, ns)| cost.ns = ns);
+        let pixels = 640.0 * 360.0;
+        assert_eq!(choose(&mut renderer, 1.5 * pixels, false, false), (PresetMatter::Thin, Full));
+        assert_eq!(choose(&mut renderer, 1.5 * pixels, true, false), (PresetMatter::Deep, Half));
+        assert_eq!(choose(&mut renderer, 0.5 * pixels, true, false), (PresetMatter::Thin, Half));
+        assert_eq!(choose(&mut renderer, 2.5 * pixels, true, false), (PresetMatter::Deep, Full));
+        // No CPU renders a pixel in 2 ns.
+        assert_eq!(choose(&mut renderer, 2.5 * pixels, true, true), (PresetMatter::Thin, Full));
+        let costs = &renderer.depth_costs[Preset::Cinematic as usize];
+        assert!(costs.len() == 2 && costs.iter().all(|cost| cost.ns > 2.5));
     }
 
     /// However long its frames take, a look is timed for about half a second.
@@ -182,7 +247,7 @@ mod tests {
         let began = Instant::now();
         assert_eq!(renderer.set_preset(Preset::Cinematic, within(16e6)).unwrap(), PresetMatter::Thin);
         let took = began.elapsed();
-        let ns = renderer.depth_costs[Preset::Cinematic as usize].unwrap().ns;
+        let ns = renderer.depth_costs[Preset::Cinematic as usize][0].ns;
         assert!(ns.is_finite() && ns * 640.0 * 360.0 > 16e6, "{ns} ns a pixel");
         // The frame of 480 x 270 that was timed before takes longer than this on any CPU, and the bound is missed by
         // one part of a frame at most, beside other work too.
@@ -197,6 +262,6 @@ mod tests {
         for matter in [PresetMatter::Deep, PresetMatter::Thin] {
             assert_eq!(renderer.set_preset(Preset::Cinematic, MatterChoice::This(matter)).unwrap(), matter);
         }
-        assert!(renderer.depth_costs.iter().all(Option::is_none));
+        assert!(renderer.depth_costs.iter().all(Vec::is_empty));
     }
 }

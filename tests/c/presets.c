@@ -117,7 +117,8 @@ static BhrPresetOptions options_for(BhrPresetMatter matter) {
     BhrPresetOptions options;
     CHECK_OK(bhr_preset_options_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.matter == BHR_PRESET_MATTER_AUTO && options.width == 1920 &&
-              options.height == 1080 && options.frame_ms == 16.0,
+              options.height == 1080 && options.frame_ms == 16.0 && options.measure_anew == 0 &&
+              options.may_halve == 0,
           "other defaults than bhr.h states");
     options.matter = matter;
     return options;
@@ -215,6 +216,37 @@ static void whose_volumes(BhrContext *context) {
     CHECK(count == 0, "THIN leaves a volume");
 }
 
+static int32_t resolution_of(BhrContext *context) {
+    BhrQuality quality = {.struct_size = sizeof quality};
+    CHECK_OK(bhr_get_quality(context, &quality));
+    return quality.volume_resolution;
+}
+
+/* Where it may, AUTO sets the resolution that depth fits with, and leaves it where none does. */
+static void halved_choices(BhrContext *context) {
+    BhrPresetOptions options = options_for(BHR_PRESET_MATTER_AUTO);
+    BhrPresetMatter  matter = 77;
+    BhrQuality       quality = {.struct_size = sizeof quality}, before = quality;
+    CHECK_OK(bhr_get_quality(context, &before));
+    quality = before, quality.volume_resolution = BHR_VOLUME_RESOLUTION_HALF;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    options.may_halve = 1, options.frame_ms = 1e-3, options.width = options.height = 1u << 20;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_THIN && resolution_of(context) == BHR_VOLUME_RESOLUTION_HALF,
+          "too slow at any resolution: matter %d, resolution %d", (int)matter, (int)resolution_of(context));
+    options.frame_ms = 1e9, options.width = options.height = 1, options.measure_anew = 1;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_DEEP && resolution_of(context) == BHR_VOLUME_RESOLUTION_FULL,
+          "time enough: matter %d, resolution %d", (int)matter, (int)resolution_of(context));
+    /* A host of the first release has no such fields. */
+    CHECK_OK(bhr_set_quality(context, &quality));
+    options.struct_size = 24, options.may_halve = options.measure_anew = 99;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_DEEP && resolution_of(context) == BHR_VOLUME_RESOLUTION_HALF,
+          "an older host: matter %d, resolution %d", (int)matter, (int)resolution_of(context));
+    CHECK_OK(bhr_set_quality(context, &before));
+}
+
 /* AUTO takes depth where there is time for it, by frames that nothing counts. */
 static void choices(BhrContext *context) {
     BhrPresetOptions options = options_for(BHR_PRESET_MATTER_AUTO);
@@ -232,6 +264,7 @@ static void choices(BhrContext *context) {
     CHECK(matter == BHR_PRESET_MATTER_DEEP, "1920 x 1080 in 11 days is thin");
     CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, NULL, &matter)); /* known by now */
     CHECK(matter == BHR_PRESET_MATTER_DEEP || matter == BHR_PRESET_MATTER_THIN, "no choice: %d", (int)matter);
+    halved_choices(context);
     CHECK_OK(bhr_frame_stats(context, &after));
     CHECK(after.frame_index == before.frame_index, "frames that were timed are counted");
 }
@@ -263,6 +296,12 @@ static void refused_options(BhrContext *context) {
         REFUSED("width");
         options.height = sides[i];
         REFUSED("height");
+    }
+    for (uint32_t flag = 2; flag != 1; flag = flag == 2 ? UINT32_MAX : 1) {
+        options.measure_anew = flag;
+        REFUSED("measure_anew");
+        options.may_halve = flag;
+        REFUSED("may_halve");
     }
     for (size_t i = 0; i < COUNT_OF(matters); i++) {
         options.matter = matters[i];

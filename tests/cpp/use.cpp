@@ -157,6 +157,7 @@ static void scene() {
     EXPECT(context.set_preset(bhr::Preset::teaching) && context.film().value().tone_map == bhr::ToneMap::none);
     bhr::PresetOptions options;
     EXPECT(options.matter == bhr::PresetMatter::automatic && options.width == 1920 && options.frame_ms == 16.0);
+    EXPECT(options.measure_anew == 0 && options.may_halve == 0);
     options.matter = bhr::PresetMatter::deep;
     EXPECT(context.set_preset_with(bhr::Preset::physical, options).value() == bhr::PresetMatter::deep);
     EXPECT(!context.disk().value() && context.volumes().value().size() == 1);

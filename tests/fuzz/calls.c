@@ -261,6 +261,8 @@ static void scene_call(BhrContext *context) {
         options.struct_size = mostly(sizeof options, byte());
         options.matter = BHR_PRESET_MATTER_THIN + byte() % 3;
         options.frame_ms = number();
+        options.measure_anew = byte() % 3;
+        options.may_halve = byte() % 3;
         check(bhr_set_preset_with(context, constant(BHR_PRESET_TEACHING), &options, NULL));
         break;
     case 10: check(bhr_set_view(context, constant(BHR_VIEW_INTENSITY))); break;

@@ -361,15 +361,19 @@ class Context(Tracing):
         *,
         size: tuple[int, int] = (0, 0),
         frame_ms: float = 0.0,
+        measure_anew: bool = False,
+        may_halve: bool = False,
     ) -> PresetMatter:
         """Gives the scene a named look and decides its volumes: THIN, none and the disk; DEEP, one in place of the
-        disk; AUTO, whichever a frame of `size` in `frame_ms` allows, which is measured once. Returns which it is. 0
-        stands for the defaults, (1920, 1080) and 16."""
+        disk; AUTO, whichever a frame of `size` in `frame_ms` allows, which is measured once, or again where
+        `measure_anew`. Returns which it is. 0 stands for the defaults, (1920, 1080) and 16. Where it `may_halve`, AUTO
+        takes half resolution (`quality.volume_resolution`) before it leaves volumes out."""
         options = new("BhrPresetOptions")
         look = member(Preset, preset, "preset")
         options.matter = member(PresetMatter, matter, "matter")
         options.width, options.height = size
         options.frame_ms = frame_ms
+        options.measure_anew, options.may_halve = measure_anew, may_halve
         chosen = ffi.new("BhrPresetMatter *")
         with self._gate as context:
             check(lib.bhr_set_preset_with(context, look, options, chosen))
