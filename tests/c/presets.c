@@ -273,7 +273,7 @@ static void refused_options(BhrContext *context) {
     static const double   times[] = {-1.0, 9e-4, 1.1e9, NAN, INFINITY, -INFINITY};
     static const uint32_t sides[] = {(1u << 20) + 1, UINT32_MAX};
     static const int32_t  matters[] = {-1, 3, INT32_MIN, INT32_MAX};
-    static const uint32_t sizes[] = {0, 4, sizeof(BhrPresetOptions) - 1, 1u << 20, UINT32_MAX};
+    static const uint32_t sizes[] = {0, 4, 23, 1u << 20, UINT32_MAX}; /* 24 is that of the first release */
     struct {
         BhrPresetOptions known;
         unsigned char    tail[8];
