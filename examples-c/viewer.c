@@ -371,7 +371,7 @@ static void set_goal(BhrPresetOptions *options, const Viewer *v, const Settings 
     options->height = v->size[1];
     const double rate = s->rate > 0.0 ? s->rate : display_rate();
     options->frame_ms = rate > 0.0 ? fmax(1e-3, fmin(1000.0 / rate, 1e9)) : 0.0; /* 0: the library's */
-    options->may_halve = 1; /* the first thing that the governor gives up while the picture moves */
+    options->may_halve = 1; /* while the picture moves: the governor begins with it (governor_take_resolution) */
     if (s->frames != 0 && options->matter == BHR_PRESET_MATTER_AUTO) {
         options->matter = BHR_PRESET_MATTER_THIN; /* the same frames on every machine */
     }
@@ -382,6 +382,8 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     if (scene_input_finish(s->input, v->context, s->options, s->argc, s->argv) != 0) {
         return 0;
     }
+    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
+    governor_take_resolution(&v->governor, v->context);
     v->scene = s->input->scene;
     const int32_t motion = v->scene.camera.motion; /* the pilot sets the motion */
     v->scene.camera.motion = BHR_MOTION_STATIC;
@@ -400,7 +402,6 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->pilot.motion = motion;
     v->pilot.steered = 1;
     v->pace = FIRST_PACE;
-    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
     if (s->frames != 0) { /* the same frames on every machine */
         v->most_frames = s->frames;
         v->fixed_step = MACHINE_STEP;

@@ -198,6 +198,7 @@ static void cycle_preset(Viewer *v, double unused) {
         report_failure("set the preset", status);
         return;
     }
+    governor_take_resolution(&v->governor, v->context);
     SAY(v, "preset: %s, %s matter", choice_name(PRESETS, v->preset), choice_name(PRESET_MATTERS, v->preset_matter));
 }
 

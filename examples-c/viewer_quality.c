@@ -42,6 +42,14 @@ void governor_init(Governor *governor, double rate, double scale) {
     *governor = fresh;
 }
 
+void governor_take_resolution(Governor *governor, const BhrContext *context) {
+    BhrQuality quality;
+    BHR_INIT(quality);
+    if (bhr_get_quality(context, &quality) >= 0) {
+        governor->half = quality.volume_resolution == BHR_VOLUME_RESOLUTION_HALF;
+    }
+}
+
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality) {
     if (!governor->enabled) {
         return;

@@ -28,6 +28,9 @@ typedef struct Governor {
 /* `rate` in frames per second; `scale` to begin with, 0.1 .. 1. */
 void governor_init(Governor *governor, double rate, double scale);
 
+/* Begins with the resolution of matter that AUTO of a preset found fast enough, which the context has since. */
+void governor_take_resolution(Governor *governor, const BhrContext *context);
+
 /* Lays scale, samples and the resolution of matter for the next frame over the user's quality. */
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality);
 

@@ -1008,7 +1008,7 @@ typedef struct BhrPresetOptions {
     uint32_t height; /**< AUTO: their height, in pixels, 1 .. 1048576; 0 means the default, 1080. */
     /** AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16. */
     double frame_ms;
-    uint32_t measure_anew; /**< AUTO: 1 measures again, 0 (default) only what was not measured before. */
+    uint32_t measure_anew; /**< AUTO: 1 forgets what was measured for the preset before; 0 (default) keeps it. */
     /** AUTO: 1 takes DEEP at half resolution where FULL is too slow, and sets BhrQuality.volume_resolution to what
      * DEEP fits with; 0 (default) leaves that as it is. */
     uint32_t may_halve;
@@ -1025,9 +1025,9 @@ BHR_NODISCARD BhrStatus bhr_preset_options_init(BhrPresetOptions *options, size_
  * of the thin disk, with THIN none. Volumes that were set before are gone; hot spots stay. options NULL: all
  * defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
  *
- * THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about
- * half a second at most, logs at INFO what it found and took, and may choose otherwise on another machine, or when the
- * machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0 */
+ * THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset and resolution in a
+ * context, for about half a second at most, logs at INFO what it took, and may choose otherwise on another machine, or
+ * when the machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_preset_with(BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                             BhrPresetMatter *out_matter);
 

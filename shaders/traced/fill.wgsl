@@ -20,8 +20,8 @@
 
 // Whether media are I_nu and optical depth.
 override SHOWS_DEPTH: bool = false;
-// Whether pixels have records here. Rays that are looked up have none, and of what they meet matter alone counts:
-// captured rays are all together, so that pixels amid rays of one fate have that fate.
+// Whether pixels have records here. Those that are looked up have none; nothing shines in their plane, and captured
+// rays are all together, so that pixels amid rays of one fate have that fate, but for a shadow narrower than a block.
 override OWN_RECORDS: bool = true;
 
 // The bits of TracedMeta's first word that tell which media a ray has: its fate, and the orders that are kept.

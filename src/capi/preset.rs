@@ -49,7 +49,7 @@ pub struct BhrPresetOptions {
     pub height: u32,
     /// AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16.
     pub frame_ms: f64,
-    /// AUTO: 1 measures again, 0 (default) only what was not measured before.
+    /// AUTO: 1 forgets what was measured for the preset before; 0 (default) keeps it.
     pub measure_anew: u32,
     /// AUTO: 1 takes DEEP at half resolution where FULL is too slow, and sets BhrQuality.volume_resolution to what
     /// DEEP fits with; 0 (default) leaves that as it is.
@@ -154,9 +154,9 @@ pub unsafe extern "C" fn bhr_preset_options_init(options: *mut BhrPresetOptions,
 /// of the thin disk, with THIN none. Volumes that were set before are gone; hot spots stay. options NULL: all
 /// defaults. *out_matter, unless NULL, becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now.
 ///
-/// THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset in a context, for about
-/// half a second at most, logs at INFO what it found and took, and may choose otherwise on another machine, or when the
-/// machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0
+/// THIN and DEEP give the same picture on every machine. AUTO measures, once for each preset and resolution in a
+/// context, for about half a second at most, logs at INFO what it took, and may choose otherwise on another machine, or
+/// when the machine is busy (docs/presets.md). The call waits for a job that is being rendered. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_preset_with(
     context: *mut BhrContext,

@@ -7,10 +7,12 @@
 //! of block b of a row goes through pixel coordinate 2 b + 1, the middle of its two pixels, plus what the sample lies
 //! off the middle of a pixel. A pixel's centre is then a quarter of the way from the block nearest to it to the next,
 //! and its medium is found from 4 x 4 blocks without the corners, which all must have met the same crossings and the
-//! same fate as the pixel. What the cubics through four blocks (Lagrange) of the middle rows add to the plane between
-//! the nearest four, and what those of the middle columns add, is added to that plane (Gordon's sum of interpolations,
-//! Gordon 1971, SIAM J. Numer. Anal. 8, 158): as exact as the product of both cubics but for a term of the fourth
-//! order, and no block counts that the test below does not look at.
+//! same fate as the pixel. (GPUs that look up what is behind matter compare the blocks alone: nothing shines in the
+//! plane then, and a shadow that is narrower than a block is all that they may miss.) What the cubics through four
+//! blocks (Lagrange) of the middle rows add to the plane between the nearest four, and what those of the middle columns
+//! add, is added to that plane (Gordon's sum of interpolations, Gordon 1971, SIAM J. Numer. Anal. 8, 158): as exact as
+//! the product of both cubics but for a term of the fourth order, and no block counts that the test below does not look
+//! at.
 //!
 //! Second differences of the blocks say how far a straight line between two of them may be off, which is 3/32 of them a
 //! quarter of the way. Where that is more than `TOLERANCE` of what is interpolated, the pixel's own ray is summed. It

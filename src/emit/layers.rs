@@ -190,7 +190,12 @@ impl<'a, 'b> Layers<'a, 'b> {
                     (glow.absorption * column, glow.brightness * fitted_luminance(ln_seen, glow.log_reference))
                 };
                 let left = (-depth).exp();
-                let share = if glow.power_law { own_share(depth) } else { 1.0 - left };
+                // Thinner ones would be rounding.
+                let share = match glow.power_law {
+                    true => own_share(depth),
+                    false if depth < 1e-5 => depth * (1.0 - 0.5 * depth),
+                    false => 1.0 - left,
+                };
                 let sent = opaque * share * medium.through;
                 light += sent;
                 heat += sent * ln_seen;

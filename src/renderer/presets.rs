@@ -77,11 +77,14 @@ impl Renderer {
     /// The resolution of volumes with which frames with depth take no longer than the goal, the scene's unless that is
     /// to be chosen. `None`: they take longer.
     fn resolution_within(&mut self, preset: Preset, goal: FrameGoal) -> Result<Option<VolumeResolution>> {
+        if goal.measure_anew {
+            self.depth_costs[preset as usize].clear();
+        }
         let own = [self.scene.quality.volume_resolution];
         let resolutions: &[_] = if goal.may_halve { &[VolumeResolution::Full, VolumeResolution::Half] } else { &own };
         for &resolution in resolutions {
             let samples = f64::from(self.scene.quality.samples_per_pixel) * goal.pixels;
-            let ns = samples * self.depth_cost(preset, resolution, goal.measure_anew)?;
+            let ns = samples * self.depth_cost(preset, resolution)?;
             let (ms, most, fits) = (1e-6 * ns, 1e-6 * goal.ns, ns <= goal.ns);
             let verdict = if fits { "it is taken" } else { "it is too slow" };
             log::info!("{preset:?} with depth, {resolution:?} resolution: {ms:.3} ms a frame of {most:.3}: {verdict}");
@@ -92,13 +95,12 @@ impl Renderer {
         Ok(None)
     }
 
-    /// In ns for each sample of a pixel; measured once for each quality, or `anew`.
-    fn depth_cost(&mut self, preset: Preset, volume_resolution: VolumeResolution, anew: bool) -> Result<f64> {
+    /// In ns for each sample of a pixel; measured once for each quality.
+    fn depth_cost(&mut self, preset: Preset, volume_resolution: VolumeResolution) -> Result<f64> {
         // Windows' alone is the scale, and samples are what the cost is of.
         let quality = Quality { samples_per_pixel: 1, render_scale: 1.0, volume_resolution, ..self.scene.quality };
-        let known = &mut self.depth_costs[preset as usize];
-        known.retain(|known| !(anew && known.quality == quality));
-        if let Some(known) = known.iter().find(|known| known.quality == quality) {
+        let known = self.depth_costs[preset as usize].iter().find(|known| known.quality == quality);
+        if let Some(known) = known {
             return Ok(known.ns);
         }
         let mut scene = Scene { quality, ..Scene::default() };

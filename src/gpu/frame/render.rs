@@ -228,7 +228,8 @@ impl GpuTracer {
         let (bytes, ray_steps) = cost_of_pixel(scene, setup, beside, packed_bytes(request, delivery));
         let most_rows = delivery.most_rows(&self.device)?;
         let most_rows = most_rows.min(beside.map_or(Ok(u32::MAX), |beside| beside.most_rows(&self.device))?);
-        let budget = Budget::of(self.adapter.info.discrete, self.device.limits().max_storage_buffer_binding_size);
+        let binding = self.device.limits().max_storage_buffer_binding_size;
+        let budget = Budget::of(self.adapter.info.discrete, binding, setup.variants.shade.volumes);
         let longest = self.device.limits().max_texture_dimension_2d;
         let side = longest.min(MAX_TILE_SIDE).min(most_rows.saturating_add(2));
         let (samples, size) = (setup.samples, [request.width, request.height]);

@@ -85,7 +85,8 @@ impl GpuTracer {
         // The numbers have two staging buffers.
         let bytes = setup.record_setup.bytes_per_pixel() + 3 * pixel_bytes;
         let side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
-        let budget = Budget::of(self.adapter.info.discrete, self.device.limits().max_storage_buffer_binding_size);
+        let binding = self.device.limits().max_storage_buffer_binding_size;
+        let budget = Budget::of(self.adapter.info.discrete, binding, setup.variants.shade.volumes);
         let plan = TilePlan::new(budget, request, bytes, side, ray_steps, 1);
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, &setup)?;
         let software = self.adapter.info.software;

@@ -15,17 +15,20 @@ pub struct Budget {
 impl Budget {
     /// For a GPU that shares its memory with the host, or a software driver: 40 ms at 0.4 TFLOPS.
     pub const SMALL: Self = Self { steps: 96 << 20, memory: 192 << 20 };
-    /// For a GPU with memory of its own, of 2 TFLOPS or more: 175 ms at most. Some rays, along the edge of the shadow,
+    /// For a GPU with memory of its own, of 2 TFLOPS or more: 64 ms at most.
+    pub const LARGE: Self = Self { steps: 768 << 20, memory: 576 << 20 };
+    /// The steps for such a GPU that sums matter with depth, 175 ms at most. Some rays, along the edge of the shadow,
     /// take many times as long as others, and each kernel of a tile ends with its last one: a frame of turbulent matter
     /// at 3840 x 2160 takes 1.07 times as long in four tiles as in the one of this budget, at half resolution 1.16
-    /// times (H100).
-    pub const LARGE: Self = Self { steps: 2048 << 20, memory: 576 << 20 };
+    /// times (H100). Most are what matter counts as: 32 bits hold the sum of the others.
+    pub const STEPS_OF_MATTER: u64 = 2048 << 20;
 
     /// `discrete`: whether the GPU has memory of its own; `binding`: the most bytes of a buffer that its kernels reach,
-    /// of which plans count packed pixels three times.
-    pub fn of(discrete: bool, binding: u64) -> Self {
+    /// of which plans count packed pixels three times; `matter`: whether it sums matter with depth.
+    pub fn of(discrete: bool, binding: u64, matter: bool) -> Self {
         let budget = if discrete { Self::LARGE } else { Self::SMALL };
-        Self { memory: budget.memory.min(3 * binding), ..budget }
+        let steps = if discrete && matter { Self::STEPS_OF_MATTER } else { budget.steps };
+        Self { memory: budget.memory.min(3 * binding), steps }
     }
 }
 
