@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold, integrated. The sky's footprint is the
-// tables' all the same; those of crossings come from the next pixels' rays.
+// Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold, integrated. Footprints, of the sky and
+// of crossings, are the tables' all the same: those of the next pixels' rays took twice as long, and changed the light
+// of a turbulent disk by 0.08 of 255 (root mean square, spin 0.9 and 0.998).
 
 #import constants
 #import camera/observer
@@ -15,15 +16,11 @@
 #import shared/math
 #import shared/pass
 
-// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left
-// where a face ends), of the next below. u is 0 where there is none.
-var<private> deferred_crossings: array<vec3<f32>, 3u * CROSSINGS_KEPT>;
-var<private> deferred_ray: u32;
+// u, azimuth and delay of the crossings of the plane by order. u is 0 where there is none.
+var<private> deferred_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
 var<private> deferred_order: u32;
-// The number of orders up to the last crossing of the pixel's own ray, which is traced last.
+// The number of orders up to the last crossing.
 var<private> deferred_count: u32;
-// The step from the pixel to its second ray: 1 or -1 pixels.
-var<private> deferred_step: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
@@ -31,8 +28,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
     deferred_count = min(crossing.order + 1u, CROSSINGS_KEPT);
-    deferred_crossings[deferred_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] =
-        vec3<f32>(crossing.u, azimuth, crossing.delay);
+    deferred_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
 // No matter is summed along these rays.
@@ -47,25 +43,18 @@ fn ray_record(id: vec2<u32>) -> Record {
     }
     let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings, frame.capture_u,
         frame.opaque_u);
-    for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
+    for (var i = 0u; i < CROSSINGS_KEPT; i += 1u) {
         deferred_crossings[i] = vec3<f32>(0.0);
     }
-    let x = pixel_place(id).x;
-    deferred_step = select(-1.0, 1.0, same_face(x, x + 1.0));
-    // The pixel itself comes last.
-    for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u) {
-        deferred_ray = k - 1u;
-        deferred_count = 0u;
-        let place = pixel_place(id) + vec2<f32>(f32(deferred_ray & 1u) * deferred_step, f32(deferred_ray >> 1u));
-        let begin = begin_local(aberrate(look_direction(place.x, place.y)).n);
-        let traced = trace(begin.c, begin.state, settings);
-        record.fate = traced.fate;
-        record.steps = traced.steps;
-        if deferred_ray == 0u && traced.fate == FATE_ESCAPED {
-            let end = escape(begin.c, traced);
-            record.sky = chart_direction(end.n, end.drag);
-            record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
-        }
+    deferred_count = 0u;
+    let begin = begin_local(lookup.seen.n);
+    let traced = trace(begin.c, begin.state, settings);
+    record.fate = traced.fate;
+    record.steps = traced.steps;
+    if traced.fate == FATE_ESCAPED {
+        let end = escape(begin.c, traced);
+        record.sky = chart_direction(end.n, end.drag);
+        record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
     }
     deferred_order = 0u;
     atomicAdd(&deferred.steps, record.steps);
@@ -79,11 +68,12 @@ fn with_sky(record: Record) -> Record {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
+    var at: Interpolated;
     while more_crossings() && crossing.u <= 0.0 {
         let u = deferred_crossings[deferred_order].x;
         if u > 0.0 {
             // The tables' slope is nearly right all the same.
-            let at = interpolate(select(deferred_order / 4u, deferred_order, PATTERN));
+            at = interpolate(select(deferred_order / 4u, deferred_order, PATTERN));
             let change = looked_up_change(at, select(deferred_order % 4u, 0u, PATTERN));
             lookup.on_edge = lookup.on_edge || near_disk_edge(u, change);
         }
@@ -96,10 +86,12 @@ fn next_crossing() -> Crossing {
     if crossing.u > 0.0 {
         crossing.g = lookup.seen.frequency_ratio * redshift_of(begin_local(lookup.seen.n).c, crossing.u);
         if PATTERN {
-            let at = deferred_crossings[crossing.order];
-            crossing.place = EmissionPoint(-log(at.x), at.y, at.z);
-            crossing.dx = deferred_change(at, deferred_crossings[CROSSINGS_KEPT + crossing.order], deferred_step);
-            crossing.dy = deferred_change(at, deferred_crossings[2u * CROSSINGS_KEPT + crossing.order], 1.0);
+            let own = deferred_crossings[crossing.order];
+            crossing.place = EmissionPoint(-log(own.x), own.y, own.z);
+        }
+        if PATTERN && FOOTPRINTS {
+            crossing.dx = place_change(crossing.u, at, lookup.dx);
+            crossing.dy = place_change(crossing.u, at, lookup.dy);
         }
     }
     return crossing;
@@ -107,11 +99,4 @@ fn next_crossing() -> Crossing {
 
 fn more_crossings() -> bool {
     return deferred_order < deferred_count;
-}
-
-fn deferred_change(here: vec3<f32>, next: vec3<f32>, step: f32) -> EmissionPoint {
-    if next.x <= 0.0 {
-        return EmissionPoint(1e30, 0.0, 0.0);
-    }
-    return EmissionPoint(-step * log(next.x / here.x), step * wrap_angle(next.y - here.y), step * (next.z - here.z));
 }

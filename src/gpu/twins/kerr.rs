@@ -7,7 +7,6 @@ use super::run::Image;
 use super::scenes::{self, FRAMES, Kind, view, views};
 use super::{Group, ROUNDING, TRANSCENDENTAL, twin};
 use crate::gpu::kernel::sizes::{KERR_COLUMNS, KERR_PER_OCTAVE};
-use crate::physics::geodesic::wrap_angle;
 use crate::physics::integrator::nystrom_step;
 use crate::physics::lens::critical::{CRITICAL_NODES, radial_potential};
 use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution, regular_delay};
@@ -17,7 +16,7 @@ use std::sync::OnceLock;
 
 /// Looking up reads flags and nodes, of which there are none here.
 const HEAD: &str = "
-#import lens/kerr_deferred
+#import lens/kerr_record
 var<private> frame: Frame;
 var<private> pass_: Pass;
 fn enter_lens() {
@@ -200,27 +199,6 @@ pub fn group() -> Group {
             1e-3,
         )
         .with(&constants),
-        twin(
-            "lens/kerr_deferred",
-            "deferred_change",
-            "let p = deferred_change(in3(0u), in3(3u), in1(6u)); out3(vec3<f32>(p.ln_r, p.azimuth, p.delay));",
-            |i| {
-                for _ in 0..2 {
-                    i.log(1e-2, 0.3);
-                    i.even(-3.0, 3.0);
-                    i.even(0.0, 50.0);
-                }
-                let step = [-1.0, 1.0][i.random.below(2) as usize];
-                i.push(step);
-            },
-            |i, o| {
-                let (here, next, step) = (i.v3(0), i.v3(3), i.x(6));
-                o.near(-step * (next.x / here.x).ln(), 1.0);
-                o.near(step * wrap_angle(next.y - here.y), 1.0);
-                o.near(step * (next.z - here.z), 1.0);
-            },
-            2e-6,
-        ),
     ];
     let head = [HEAD, FRAMES].concat();
     Group { name: "kerr", head, twins, images, tables: scenes::tables }
