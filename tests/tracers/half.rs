@@ -6,7 +6,9 @@ use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
 use crate::random::runs_all;
 use crate::volumes::one_of_each;
 use bhr::image::PixelFormat;
-use bhr::scene::{Camera, Disk, HotSpot, LensTables, Projection, Region, Scene, Sky, View, Volume, VolumeResolution};
+use bhr::scene::{
+    Camera, Disk, HotSpot, LensTables, Motion, Projection, Region, Scene, Sky, View, Volume, VolumeResolution,
+};
 use glam::DVec3;
 
 fn outside(distance: f64, elevation: f64, tan: f64) -> Camera {
@@ -146,14 +148,22 @@ fn the_sky_behind_blocks_is_looked_up() {
     let mut still = named("soft disk");
     (still.hole.spin, still.quality.samples_per_pixel) = (0.0, 2);
     let depth = Scene { view: View::OpticalDepth, ..named("torus") };
+    let mut cube = named("soft disk");
+    (cube.camera, cube.sky) = (outside(9.0, 20.0, 0.4), Sky::black());
+    cube.camera.projection = Projection::Cube;
+    let mut falling = named("soft disk");
+    (falling.hole.spin, falling.camera.motion) = (0.0, Motion::FreeFall);
     let all = [
+        ("hot spots", named("spots")),
+        ("a cube", cube),
+        ("a falling camera", falling),
         ("without spin, two samples", still),
         ("a fisheye", named("fisheye")),
         ("structure", named("turbulent torus")),
         ("optical depth", depth),
     ];
-    let size = [160, 90];
     for (name, scene) in all {
+        let size = if name == "a cube" { [240, 40] } else { [160, 90] };
         let [traced, looked_up] = [LensTables::Never, LensTables::Always].map(|tables| {
             gpu.scene = half(&scene);
             gpu.scene.quality.lens_tables = tables;

@@ -284,7 +284,7 @@ fn cost_of_pixel(scene: &Scene, setup: &Setup, beside: Option<&BesideSetup>, pac
     let samples = setup.samples;
     let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
     // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
-    // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
+    // in a view of nothing but the shadow's edge, and those of a picture are shaded, too.
     let steps_of = |setup: &Setup, in_kerr| match setup.record_setup.source.maker {
         _ if setup.record_setup.half => scene.expected_steps(),
         RecordMaker::Traced => scene.expected_steps(),
