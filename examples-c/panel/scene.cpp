@@ -5,6 +5,7 @@
 Result Scene::begin(BhrPreset preset, BhrPresetMatter matter) {
     preset_options_ = with_defaults(bhr_preset_options_init);
     preset_options_.matter = matter;
+    preset_options_.may_halve = 1; // the quality panel shows what AUTO took
     camera_ = with_defaults(bhr_camera_init);
     camera_.fov_y = 45.0 * DEGREE;
     read_back();
@@ -72,6 +73,7 @@ Result Scene::set_preset(BhrPreset preset) {
 
 Result Scene::set_preset_matter(BhrPresetMatter matter) {
     preset_options_.matter = matter;
+    preset_options_.may_halve = 1; // the quality panel shows what AUTO took
     return preset_ == NO_PRESET ? Result{} : set_preset(preset_);
 }
 
