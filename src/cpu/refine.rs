@@ -11,8 +11,8 @@ use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, MATTER_CURVE_SAMPLES, SEARCH_REACH,
-    SEARCH_STEPS, Strips, beside_quarter, covered, quarter_place,
+    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
+    beside_quarter, covered, curve_samples, quarter_place,
 };
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -49,7 +49,7 @@ impl<'a> Refiner<'a> {
             opaque_u: emitters.opaque_u(),
             lens,
             level: CurveLevel::new(&lens.observer.frame),
-            curve_samples: if emitters.needs().parts { MATTER_CURVE_SAMPLES } else { CURVE_SAMPLES },
+            curve_samples: curve_samples(emitters.needs().parts),
         }
     }
 

@@ -238,7 +238,7 @@ static void halved_choices(BhrContext *context) {
     CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
     CHECK(matter == BHR_PRESET_MATTER_DEEP && resolution_of(context) == BHR_VOLUME_RESOLUTION_FULL,
           "time enough: matter %d, resolution %d", (int)matter, (int)resolution_of(context));
-    /* A host of the first release has no such fields. */
+    /* A host that was compiled before has no such fields. */
     CHECK_OK(bhr_set_quality(context, &quality));
     options.struct_size = 24, options.may_halve = options.measure_anew = 99;
     CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
@@ -273,7 +273,8 @@ static void refused_options(BhrContext *context) {
     static const double   times[] = {-1.0, 9e-4, 1.1e9, NAN, INFINITY, -INFINITY};
     static const uint32_t sides[] = {(1u << 20) + 1, UINT32_MAX};
     static const int32_t  matters[] = {-1, 3, INT32_MIN, INT32_MAX};
-    static const uint32_t sizes[] = {0, 4, 23, 1u << 20, UINT32_MAX}; /* 24 is that of the first release */
+    static const uint32_t flags[] = {2, UINT32_MAX};
+    static const uint32_t sizes[] = {0, 4, 23, 1u << 20, UINT32_MAX}; /* 24 without may_halve and measure_anew */
     struct {
         BhrPresetOptions known;
         unsigned char    tail[8];
@@ -297,10 +298,10 @@ static void refused_options(BhrContext *context) {
         options.height = sides[i];
         REFUSED("height");
     }
-    for (uint32_t flag = 2; flag != 1; flag = flag == 2 ? UINT32_MAX : 1) {
-        options.measure_anew = flag;
+    for (size_t i = 0; i < COUNT_OF(flags); i++) {
+        options.measure_anew = flags[i];
         REFUSED("measure_anew");
-        options.may_halve = flag;
+        options.may_halve = flags[i];
         REFUSED("may_halve");
     }
     for (size_t i = 0; i < COUNT_OF(matters); i++) {

@@ -22,7 +22,7 @@ use crate::gpu::frame::submission::under_way::Submission;
 use crate::gpu::kernel::key::{KernelKey, KernelKind};
 use crate::gpu::kernel::variant::{PixelTarget, RecordMaker};
 use crate::scene::Scene;
-use crate::scene::refine::{CURVE_SAMPLES, MATTER_CURVE_SAMPLES};
+use crate::scene::refine::curve_samples;
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
 use std::collections::VecDeque;
 
@@ -207,7 +207,7 @@ impl GpuTracer {
             delivery,
             handed: None,
             samples,
-            curve_samples: if setup.variants.shade.volumes { MATTER_CURVE_SAMPLES } else { CURVE_SAMPLES },
+            curve_samples: curve_samples(setup.variants.shade.volumes),
             projection,
             source,
             steps,

@@ -113,7 +113,7 @@ impl RecordSetup {
     /// The source of the records of samples that are taken of a pixel anew. Matter is summed along integrated rays.
     pub fn sample_source(&self) -> RecordSource {
         match self.variant.matter {
-            Some(_) => RecordSource { maker: RecordMaker::Traced, delay: self.variant.delay, ..self.source },
+            Some(_) => RecordSource { maker: RecordMaker::Traced, ..self.source },
             None => self.deferred_source().unwrap_or(self.source),
         }
     }
