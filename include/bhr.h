@@ -8,7 +8,7 @@
  *   version; status, messages; log; adapters; windows of the host; context; the black hole;
  *   the camera: an observer with a lens; cameras as matrices; accretion disk; matter with depth: volumes and hot spots;
  *   images in the host's memory; sky; film; relativistic effects, time; presets: named looks; quality;
- *   what a pixel shows; parts of a larger frame; rendering into memory; rendering in the background;
+ *   what a pixel shows; parts of a larger frame; scenes as text; rendering into memory; rendering in the background;
  *   outputs beside the picture; the host's things before the camera; rendering into windows;
  *   rays: the same tracer, asked directly; points on the screen; the matter with depth along rays;
  *   numbers about the last finished frame.
@@ -894,6 +894,11 @@ BHR_NODISCARD BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * Errors: INVALID_ARGUMENT for R32F. */
 BHR_NODISCARD BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
+/** Gives BHR_SKY_MAP the picture in a file that bhr_image_load reads, as bhr_set_sky_map does one in memory. The path
+ * is kept, so that bhr_scene_save can name it; a file that is given again and has not changed is not read again.
+ * Errors: those of bhr_image_load and bhr_set_sky_map, after which the map is as it was. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_set_sky_map_file(BhrContext *context, const char *path);
+
 /* ---- film ---- */
 
 /** The curve from light to pixels. */
@@ -1142,6 +1147,51 @@ BHR_NODISCARD BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *reg
 /** Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
  * values of bhr_region_init. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *region, int32_t *out_present);
+
+/* ---- scenes as text ---- */
+
+/** Sets the whole scene from text: everything that setters take, under the names of this header, in TOML, as
+ * docs/scenes.md describes it. What it does not name has the value of a new context, or of the preset that it names;
+ * values may change with time, and the scene is that of 0 seconds. Frames show all of it or nothing. The text has
+ * size bytes of UTF-8, at most 8 MiB, without NUL. Paths are relative to the current folder. Occluders and callbacks
+ * are left alone.
+ * Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
+ * unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE for a
+ * camera that cannot move as it is to; IO and those of bhr_set_sky_map for the sky's map. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_load(BhrContext *context, const char *text, size_t size);
+
+/** Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder.
+ * Errors: those of bhr_scene_load; IO for a file that is not there, not readable or larger than 8 MiB. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_load_file(BhrContext *context, const char *path);
+
+/** Sets the scene to a time, in seconds: what changes with time in the text that was loaded last gets its value of that
+ * time, whatever setters have made of it since, and nothing else changes. Before the first key of a value it is the
+ * first one's, after the last key the last one's. This is the time of a film; the scene's own time, which
+ * bhr_set_time takes, is one of the values that may change with it.
+ * Errors, after which the scene is as it was: INVALID_STATE where no scene was loaded, where a camera cannot move as
+ * it is to, and where a volume or a spot that changes is no more there; INVALID_ARGUMENT for values that leave their
+ * range between their keys. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_at(BhrContext *context, double seconds);
+
+/** Reads the pictures that the text that was loaded last asks for: their size in pixels, their number, 1 for one that
+ * does not move, and the rate of the film. Picture n, from 0, shows the scene at n / rate seconds. Where the text says
+ * nothing of it they are 1920 x 1080, 1 picture, 24 a second. Pointers may be NULL.
+ * Errors: INVALID_STATE where no scene was loaded. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_pictures(const BhrContext *context, uint32_t *out_width, uint32_t *out_height,
+                                           uint32_t *out_count, double *out_rate);
+
+/** Writes the scene as it is set as text that bhr_scene_load reads back to the same scene, bit by bit: *out_size
+ * becomes the length of the text in bytes without the NUL that ends it, and buffer, unless it is NULL, gets both.
+ * What changes with time in the text that was loaded last is written as it was read. Occluders are not part of it;
+ * paths are absolute.
+ * Errors: INVALID_ARGUMENT for a buffer of fewer than *out_size + 1 bytes, which then stays as it was; UNSUPPORTED
+ * for a map of the sky that has no path: one of bhr_set_sky_map or bhr_set_sky_target. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_save(const BhrContext *context, char *buffer, size_t size, size_t *out_size);
+
+/** Writes the scene as it is set to a file, as bhr_scene_save does to memory. The path of a map in the file's folder,
+ * or below it, is relative to that. A file is replaced as bhr_image_save does it.
+ * Errors: UNSUPPORTED as bhr_scene_save, also for a map's path that is not UTF-8; IO. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_scene_save_file(const BhrContext *context, const char *path);
 
 /* ---- rendering into memory ---- */
 

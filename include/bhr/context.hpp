@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-/* bhr/context.hpp -- contexts, jobs and surfaces of bhr.h as C++ objects that end themselves. Include bhr.hpp. */
+/* bhr/context.hpp -- contexts of bhr.h as C++ objects that end themselves. Include bhr.hpp. */
 #ifndef BHR_CONTEXT_HPP
 #define BHR_CONTEXT_HPP
 
 #include "camera.hpp"
+#include "handles.hpp"
 #include "image.hpp"
 #include "output.hpp"
 #include "preset.hpp"
@@ -17,77 +18,6 @@
 #include <vector>
 
 namespace bhr {
-
-/// Is told how much of a frame is done, 0 to 1; false cancels it (BhrProgressFn).
-using ProgressFunction = std::function<bool(double fraction)>;
-
-/// Is told messages; on any thread, on several at once (BhrLogFn). The text lives for the call only.
-using LogFunction = std::function<void(LogLevel level, std::string_view message)>;
-
-namespace detail {
-
-inline std::int32_t on_progress(void *user, double fraction) noexcept {
-    bool goes_on = false;
-    const bool whole = shielded([&] { goes_on = (*static_cast<ProgressFunction *>(user))(fraction); });
-    return whole && goes_on ? 1 : 0;
-}
-
-inline void on_log(void *user, BhrLogLevel level, const char *message) noexcept {
-    shielded([&] { (*static_cast<LogFunction *>(user))(static_cast<LogLevel>(level), message); });
-}
-
-/// A handle of C that is ended once.
-template <class C, void (*destroy)(C *)> struct Destroy {
-    void operator()(C *handle) const noexcept {
-        const Call inside;
-        destroy(handle);
-    }
-};
-template <class C, void (*destroy)(C *)> using Handle = std::unique_ptr<C, Destroy<C, destroy>>;
-
-/// A new object of the handle that `create` fills in; `make` makes it.
-template <class C, class Create, class Make>
-auto made(Create &&create, Make &&make) -> Result<decltype(make(static_cast<C *>(nullptr)))> {
-    const Call inside;
-    C *handle = nullptr;
-    const BhrStatus status = create(&handle);
-    if (status < 0) {
-        Error error = Error::last(status);
-        inside.rethrow();
-        return error;
-    }
-    auto object = make(handle);
-    inside.rethrow();
-    return object;
-}
-
-struct Access; // of interop.hpp
-
-/// The time in nanoseconds, for bhr_job_wait: rounded up; at the longest without limit.
-template <class Rep, class Period>
-std::uint64_t timeout_of(const std::chrono::duration<Rep, Period> &timeout) noexcept {
-    using Seconds = std::chrono::duration<long double>;
-    const long double seconds = std::chrono::duration_cast<Seconds>(timeout).count();
-    if (!(seconds > 0.0L)) {
-        return 0;
-    }
-    const long double most = 9.0e9L; // about 285 years
-    if (seconds >= most) {
-        return UINT64_MAX;
-    }
-    return static_cast<std::uint64_t>(std::ceil(seconds * 1.0e9L));
-}
-
-/// The message that bhr_context_error_message or bhr_job_error_message has for the handle.
-template <class C> std::string message_of(std::size_t (*ask)(const C *, char *, std::size_t), const C *handle) {
-    std::string text(ask(handle, nullptr, 0), '\0');
-    // Another thread's call may have failed in between, with a message of another length.
-    ask(handle, text.data(), text.size() + 1);
-    text.resize(std::strlen(text.c_str()));
-    return text;
-}
-
-} // namespace detail
 
 /// BhrContextOptions, with the defaults of bhr_context_options_init.
 struct ContextOptions {
@@ -105,84 +35,6 @@ struct ContextOptions {
     explicit ContextOptions(Backend wanted) noexcept : ContextOptions() { backend = wanted; }
     BhrContextOptions c() const noexcept { return detail::as_c<BhrContextOptions>(*this); }
 };
-
-/// How far a job is (bhr_job_wait).
-struct JobProgress {
-    bool done = false;
-    double fraction = 0.0;
-};
-
-/// A frame that is rendered in the background (BhrJob). The memory of its target must outlive it.
-class Job {
-  public:
-    /// Waits for the end; a job that failed gives its failure.
-    Result<void> wait() {
-        return detail::call([&] { return bhr_job_wait(handle_.get(), UINT64_MAX, nullptr); });
-    }
-
-    /// Waits so long at most; 0 asks how far it is. Done means that the image is complete.
-    template <class Rep, class Period>
-    Result<JobProgress> wait_for(const std::chrono::duration<Rep, Period> &timeout) {
-        return detail::ask(JobProgress(), [&](JobProgress &progress) {
-            const BhrStatus status = bhr_job_wait(handle_.get(), detail::timeout_of(timeout), &progress.fraction);
-            progress.done = status == BHR_OK;
-            return status;
-        });
-    }
-
-    /// bhr_job_error_message: of the last call that failed on this job, on whichever thread.
-    [[nodiscard]] std::string error_message() const {
-        return detail::message_of(bhr_job_error_message, handle_.get());
-    }
-
-    /// bhr_job_cancel. Any thread, inside callbacks too.
-    void cancel() noexcept { bhr_job_cancel(handle_.get()); }
-
-    /// bhr_job_stats.
-    Result<FrameStats> stats() const {
-        return detail::ask_struct<FrameStats, BhrFrameStats>([&](BhrFrameStats *it) {
-            return bhr_job_stats(handle_.get(), it);
-        });
-    }
-
-    BhrJob *get() const noexcept { return handle_.get(); }
-
-  private:
-    friend class Context;
-    friend detail::Access;
-    Job(BhrJob *handle, std::shared_ptr<ProgressFunction> progress) noexcept
-        : progress_(std::move(progress)), handle_(handle) {}
-
-    std::shared_ptr<ProgressFunction> progress_; // the job calls it until it has ended, so that it ends after it
-    detail::Handle<BhrJob, bhr_job_destroy> handle_;
-};
-
-/// A window that a context renders into (BhrSurface). The window and its display must outlive it.
-class Surface {
-  public:
-    /// bhr_surface_resize.
-    Result<void> resize(std::uint32_t width, std::uint32_t height) {
-        return detail::call([&] { return bhr_surface_resize(handle_.get(), width, height); });
-    }
-
-    /// bhr_surface_set_present_mode.
-    Result<void> set_present_mode(PresentMode mode) {
-        return detail::call([&] {
-            return bhr_surface_set_present_mode(handle_.get(), static_cast<BhrPresentMode>(mode));
-        });
-    }
-
-    BhrSurface *get() const noexcept { return handle_.get(); }
-
-  private:
-    friend class Context;
-    explicit Surface(BhrSurface *handle) noexcept : handle_(handle) {}
-
-    detail::Handle<BhrSurface, bhr_surface_destroy> handle_;
-};
-
-/// The end of a frame for a window: skipped where the window is hidden or 0 x 0.
-enum class Presented { yes, skipped };
 
 /// A scene and what traces it (BhrContext).
 class Context {
@@ -293,6 +145,9 @@ class Context {
     /// bhr_get_sky.
     Result<Sky> sky() const { return filled<Sky, BhrSky>(bhr_get_sky); }
     Result<void> set_sky_map(const std::optional<Image> &equirect) { return set_or_none(bhr_set_sky_map, equirect); }
+    Result<void> set_sky_map_file(const std::string &path) {
+        return detail::call([&] { return bhr_set_sky_map_file(get(), path.c_str()); });
+    }
 
     Result<void> set_film(const Film &film) { return set(bhr_set_film, film.c()); }
     /// bhr_get_film.
@@ -334,6 +189,50 @@ class Context {
     Result<void> set_region(const std::optional<Region> &region) { return set_or_none(bhr_set_region, region); }
     /// bhr_get_region.
     Result<std::optional<Region>> region() const { return filled_or_none<Region, BhrRegion>(bhr_get_region); }
+
+    /* ---- scenes as text ---- */
+
+    /// bhr_scene_load: the whole scene.
+    Result<void> load_scene(std::string_view text) {
+        return detail::call([&] { return bhr_scene_load(get(), text.data() ? text.data() : "", text.size()); });
+    }
+    /// bhr_scene_load_file.
+    Result<void> load_scene_file(const std::string &path) {
+        return detail::call([&] { return bhr_scene_load_file(get(), path.c_str()); });
+    }
+    /// bhr_scene_at: what moves in the scene that was loaded, at a time in seconds.
+    Result<void> scene_at(double seconds) {
+        return detail::call([&] { return bhr_scene_at(get(), seconds); });
+    }
+    /// bhr_scene_pictures.
+    Result<ScenePictures> scene_pictures() const {
+        return detail::ask(ScenePictures(), [&](ScenePictures &to) {
+            return bhr_scene_pictures(get(), &to.width, &to.height, &to.count, &to.rate);
+        });
+    }
+    /// bhr_scene_save: the scene's text.
+    Result<std::string> save_scene() const {
+        return detail::ask(std::string(), [&](std::string &text) {
+            for (;;) {
+                std::size_t size = 0;
+                BhrStatus status = bhr_scene_save(get(), nullptr, 0, &size);
+                if (status < 0) {
+                    return status;
+                }
+                text.resize(size);
+                status = bhr_scene_save(get(), &text[0], size + 1, &size);
+                // Another thread may have set a scene in between whose text is longer: again.
+                if (status != BHR_ERROR_INVALID_ARGUMENT) {
+                    text.resize(size);
+                    return status;
+                }
+            }
+        });
+    }
+    /// bhr_scene_save_file.
+    Result<void> save_scene_file(const std::string &path) const {
+        return detail::call([&] { return bhr_scene_save_file(get(), path.c_str()); });
+    }
 
     /* ---- frames ---- */
 

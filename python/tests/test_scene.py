@@ -55,6 +55,33 @@ def test_what_is_set_is_read(ctx, name):
     assert getattr(ctx, name) == CHANGED[name]
 
 
+def test_a_scene_is_text(ctx, tmp_path):
+    for name, value in CHANGED.items():
+        setattr(ctx, name, value)
+    ctx.volumes, ctx.hot_spots = [bhr.Volume(seed=2**64 - 1)], [bhr.HotSpot()]
+    text, changed = ctx.save_text(), {name: getattr(ctx, name) for name in CHANGED}
+    ctx.save(tmp_path / "scene.toml")
+    ctx.load_text("disk = false")
+    assert ctx.disk is None and ctx.mass == 1.0 and ctx.volumes == ()
+    ctx.load(tmp_path / "scene.toml")
+    assert ctx.save_text() == text and {name: getattr(ctx, name) for name in CHANGED} == changed
+    assert ctx.volumes[0].seed == 2**64 - 1
+    with pytest.raises(bhr.InvalidArgument, match="line 2, column 8"):
+        ctx.load_text("[hole]\nspin = 'fast'")
+    with pytest.raises(bhr.FileError, match="nowhere"):
+        ctx.load(tmp_path / "nowhere.toml")
+    assert ctx.save_text() == text
+
+
+def test_what_moves_in_a_scene(ctx):
+    with pytest.raises(bhr.Error, match="no scene was loaded"):
+        ctx.at(1.0)
+    ctx.load_text("time = { keys = [[0, 0], [4, 10]] }\n[render]\nduration = 4\nwidth = 640")
+    assert ctx.pictures == bhr.Pictures(640, 1080, 96, 24.0)
+    ctx.at(2.0)
+    assert ctx.time == 5.0
+
+
 def test_nothing_instead_of_disk_sky_region(ctx):
     ctx.disk = ctx.sky = ctx.region = None
     assert ctx.disk is None and ctx.sky.flags == 0 and ctx.region is None

@@ -235,8 +235,8 @@ pub unsafe extern "C" fn bhr_camera_look_at(
 /// Below this distance from a pole (radians of elevation) +z is no usable "up".
 const POLE: f64 = 1e-6;
 
-/// Position on a sphere about the hole, looking at its centre; `elevation` and `azimuth` as for `bhr_camera_orbit`.
-fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec3, DVec3)> {
+/// Position on a sphere about the hole, and up; `elevation` and `azimuth` as for `bhr_camera_orbit`.
+pub(super) fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec3, DVec3)> {
     if !(distance.is_finite() && distance > 0.0) {
         let distance = Number(distance);
         return Err(Error::argument(format!("distance is {distance}; it must be finite and greater than 0")));

@@ -248,7 +248,7 @@ fn create_with(log: Option<Registered>, make: impl FnOnce() -> Result<Renderer>)
     let adapter = renderer.adapter();
     ::log::info!(target: "bhr", "context on {} ({})", adapter.name, adapter.backend);
     drop(scope);
-    let state = Mutex::new(State { renderer, region: None, progress: None });
+    let state = Mutex::new(State { renderer, region: None, progress: None, loaded: None, sky_map_file: None });
     let message = Arc::new(LastMessage::new());
     Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), message, log }))
 }

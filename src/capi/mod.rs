@@ -31,6 +31,7 @@ mod progress;
 pub mod window;
 pub mod adapter;
 pub mod image;
+mod fields;
 mod state;
 mod call;
 pub mod context;
@@ -51,6 +52,10 @@ pub mod sky;
 pub mod surface;
 pub mod view;
 pub mod volume;
+mod field_list;
+#[doc(hidden)]
+pub mod scene_file;
+pub mod scene;
 pub mod interop_target;
 pub mod matrix;
 pub mod project;

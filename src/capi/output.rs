@@ -10,6 +10,7 @@ use super::interop_target::BhrTarget;
 use super::job::{BhrJob, new_job};
 use super::pointer::{Out, check_reserved, is_null, unknown};
 use super::progress::Report;
+use super::scene_file::parameters;
 use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use super::view::view;
@@ -276,7 +277,7 @@ pub unsafe extern "C" fn bhr_save_outputs(
     unsafe {
         on_context("bhr_save_outputs", context, |state| {
             let targets = read(outputs, output_size, count)?;
-            state.renderer.save_outputs(&targets, state.region, &path_of(path)?)
+            state.renderer.save_outputs(&targets, state.region, parameters, &path_of(path)?)
         })
     }
 }

@@ -120,13 +120,23 @@ impl BhrPresetOptions {
     }
 }
 
-fn named(preset: BhrPreset) -> Result<Preset> {
+/// The preset of a number.
+pub(super) fn named(preset: BhrPreset) -> Result<Preset> {
     match preset {
         BHR_PRESET_CINEMATIC => Ok(Preset::Cinematic),
         BHR_PRESET_PHYSICAL => Ok(Preset::Physical),
         BHR_PRESET_OBSERVATORY => Ok(Preset::Observatory),
         BHR_PRESET_TEACHING => Ok(Preset::Teaching),
         _ => unknown(preset, "preset", "BHR_PRESET_CINEMATIC (0) to BHR_PRESET_TEACHING (3)"),
+    }
+}
+
+/// The matter of a number, which is not AUTO.
+pub(super) fn matter_of(matter: BhrPresetMatter) -> Result<PresetMatter> {
+    match matter {
+        BHR_PRESET_MATTER_THIN => Ok(PresetMatter::Thin),
+        BHR_PRESET_MATTER_DEEP => Ok(PresetMatter::Deep),
+        value => unknown(value, "preset_matter", "BHR_PRESET_MATTER_THIN (1), _DEEP (2)"),
     }
 }
 

@@ -4,13 +4,15 @@
 use super::call::on_context;
 use super::context::BhrContext;
 use super::entry::anywhere;
-use super::image::{self, BhrImage};
+use super::image::{self, BhrImage, path_of};
+use super::state::State;
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::Sky;
-use crate::sky::SkyMap;
+use crate::sky::{MapFile, SkyMap};
 use glam::DQuat;
+use std::ffi::c_char;
 use std::sync::Arc;
 
 /// BhrSky.flags: the real sky, from the embedded star catalogue.
@@ -137,5 +139,32 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
             state.renderer.scene.sky_picture = None;
             Ok(())
         })
+    }
+}
+
+/// Gives BHR_SKY_MAP the picture in a file that bhr_image_load reads, as bhr_set_sky_map does one in memory. The path
+/// is kept, so that bhr_scene_save can name it; a file that is given again and has not changed is not read again.
+/// Errors: those of bhr_image_load and bhr_set_sky_map, after which the map is as it was. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *const c_char) -> BhrStatus {
+    // SAFETY: NULL or a C string, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_sky_map_file", context, |state| {
+            let path = path_of(path)?;
+            let path = std::path::absolute(&path).unwrap_or(path);
+            let map = MapFile::load(&path, state.sky_map_file.as_ref())?;
+            show_map(state, Some(map));
+            Ok(())
+        })
+    }
+}
+
+/// Shows the map of a file, or none.
+pub(super) fn show_map(state: &mut State, map: Option<MapFile>) {
+    state.renderer.scene.sky_map = map.as_ref().map(|map| map.map().clone());
+    state.renderer.scene.sky_picture = None;
+    // The one before is kept where there is none now: it may come again.
+    if map.is_some() {
+        state.sky_map_file = map;
     }
 }

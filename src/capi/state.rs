@@ -2,8 +2,34 @@
 //! The part of a context that its calls share. Knows no calls.
 
 use super::progress::Callback;
+use crate::error::Result;
 use crate::renderer::Renderer;
-use crate::scene::Region;
+use crate::scene::{Region, Scene};
+use crate::sky::MapFile;
+use std::path::Path;
+
+/// The pictures that a scene's text asks for.
+pub(super) struct Pictures {
+    pub size: [u32; 2],
+    pub count: u32,
+    /// Pictures a second.
+    pub rate: f64,
+}
+
+/// A scene that was loaded, as a context knows it: it stands below the structs that the scene's text is made of.
+pub(super) trait Loaded: Send {
+    /// The scene, in which what moves is as it is at a time in seconds.
+    fn moved(&self, seconds: f64, scene: &Scene, region: Option<Region>) -> Result<(Scene, Option<Region>)>;
+    /// The text of the scene as it is, with what moves as it was loaded; paths below `folder` are relative to it.
+    fn text(
+        &self,
+        scene: &Scene,
+        region: Option<Region>,
+        map: Option<&MapFile>,
+        folder: Option<&Path>,
+    ) -> Result<String>;
+    fn pictures(&self) -> Pictures;
+}
 
 /// The part of a context that its lock protects.
 pub(super) struct State {
@@ -11,4 +37,8 @@ pub(super) struct State {
     /// `None`: images are whole frames.
     pub region: Option<Region>,
     pub progress: Option<Callback>,
+    /// The scene that was loaded last.
+    pub loaded: Option<Box<dyn Loaded>>,
+    /// The file that the sky's map is from, or that of a map before it.
+    pub sky_map_file: Option<MapFile>,
 }

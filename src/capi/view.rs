@@ -46,7 +46,8 @@ pub(super) fn view(number: BhrView, name: &str) -> Result<View> {
     })
 }
 
-fn number(view: View) -> BhrView {
+/// The number of a view.
+pub(super) fn number(view: View) -> BhrView {
     match view {
         View::Light => BHR_VIEW_LIGHT,
         View::Redshift => BHR_VIEW_REDSHIFT,

@@ -56,10 +56,16 @@ impl Renderer {
         Ok(OutputFrame::new(targets, checked))
     }
 
-    /// Writes outputs to an EXR file, with all parameters of the scene that the first one's frame showed: of the scene
-    /// as it is now, and of `region`, where its pixels are of no frame that is remembered. Errors: as `check_outputs`
-    /// and [`save_layers`].
-    pub fn save_outputs(&self, targets: &[OutputTarget<'_>], region: Option<Region>, path: &Path) -> Result<()> {
+    /// Writes outputs to an EXR file, with all parameters of the scene that the first one's frame showed, which
+    /// `parameters` names: of the scene as it is now, and of `region`, where its pixels are of no frame that is
+    /// remembered. Errors: as `check_outputs` and [`save_layers`].
+    pub fn save_outputs(
+        &self,
+        targets: &[OutputTarget<'_>],
+        region: Option<Region>,
+        parameters: impl FnOnce(&Made) -> Vec<(String, Attribute)>,
+        path: &Path,
+    ) -> Result<()> {
         let made = targets.first().and_then(|first| self.made.of(&first.target));
         let region = self.check_outputs(targets, made.map(Made::region).or(region))?;
         let now;
@@ -74,7 +80,7 @@ impl Renderer {
         let about = [("version", env!("CARGO_PKG_VERSION").into()), ("backend", backend.to_string())];
         let about = about.into_iter().chain([("adapter", name.clone()), ("driver", driver.clone())]);
         let about = about.map(|(name, text)| (format!("bhr.{name}"), Attribute::Text(text)));
-        let attributes = about.chain(made.parameters()).collect::<Vec<_>>();
+        let attributes = about.chain(parameters(made)).collect::<Vec<_>>();
         let layers = targets.iter().enumerate().map(|(index, OutputTarget { output, target, .. })| {
             if *output == Output::Light && target.format() == PixelFormat::R32F {
                 return Err(Error::argument(format!(

@@ -7,6 +7,7 @@
 pub mod catalogue;
 pub(crate) mod grid;
 mod map;
+mod map_file;
 pub(crate) mod shift;
 pub(crate) mod filter;
 pub mod galaxy;
@@ -22,5 +23,6 @@ pub use index::StarIndex;
 pub use map::{Level, MAX_MAP_SIZE, SkyMap};
 #[cfg(test)]
 pub use map::{limited, pack, unpack};
+pub use map_file::MapFile;
 pub use shift::shifted_map_light;
 pub use stars::least_patch;

@@ -236,6 +236,15 @@ static void frames(const std::string &folder) {
     const bhr::Frame half = context.render(WIDTH / 2, HEIGHT).value();
     EXPECT(half.channel<std::uint32_t>(0, 20) == frame.channel<std::uint32_t>(WIDTH / 2, 20));
     EXPECT(context.set_region(std::nullopt));
+    EXPECT(!context.scene_pictures() && !context.scene_at(1.0));
+    const std::string text = context.save_scene().value();
+    EXPECT(context.load_scene("time = { keys = [[0, 0], [2, 8]] }\n[render]\nwidth = 7"));
+    EXPECT(context.scene_at(1.0) && context.time().value() == 4.0);
+    EXPECT(context.scene_pictures().value().width == 7 && context.scene_pictures().value().count == 1);
+    EXPECT(!context.load_scene("[hole]\nspin = 2") && context.time().value() == 4.0);
+    EXPECT(!context.load_scene_file("nowhere.toml") && !context.set_sky_map_file("nowhere.png"));
+    EXPECT(!context.save_scene_file("nowhere/scene.toml"));
+    EXPECT(context.load_scene(text) && context.save_scene().value() == text);
     EXPECT(context.render(WIDTH, 0).status() == bhr::StatusCode::invalid_argument);
     EXPECT(context.render(1u << 21, 1).status() == bhr::StatusCode::invalid_argument);
     EXPECT(context.render(1u << 20, 1u << 20, bhr::Format::rgba32f).status() == bhr::StatusCode::out_of_memory);

@@ -195,7 +195,7 @@ static void scene_call(BhrContext *context) {
     BhrFilm   film;
     BhrVolume  volumes[2];
     BhrHotSpot spots[2];
-    switch (byte() % 18) {
+    switch (byte() % 19) {
     case 0: check(bhr_set_mass(context, number())); break;
     case 1: check(bhr_set_spin(context, number())); break;
     case 2: check(bhr_set_axis(context, byte() < 250 ? vector : NULL)); break;
@@ -297,6 +297,19 @@ static void scene_call(BhrContext *context) {
         check(bhr_get_camera(context, &camera));
         check(bhr_camera_advance(context, &camera, number(), &gamma[0]));
         break;
+    case 17: {
+        /* The scene's own text, of which a few bytes are others. */
+        static char text[1 << 14];
+        size_t      size = 0;
+        if (bhr_scene_save(context, text, sizeof text, &size) == BHR_OK) {
+            for (size_t i = byte() % 4; i > 0 && size > 0; i--) {
+                text[(byte() * 256u + byte()) % size] = (char)byte();
+            }
+            check(bhr_scene_load(context, text, mostly((uint32_t)size, byte())));
+        }
+        check(bhr_scene_at(context, number()));
+        break;
+    }
     default: check(bhr_set_progress(context, byte() < 128 ? progress : NULL, NULL)); break;
     }
 }

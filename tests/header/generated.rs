@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 28] = [
+const SECTIONS: [(&str, &str); 29] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -28,6 +28,7 @@ const SECTIONS: [(&str, &str); 28] = [
     ("quality", "quality"),
     ("view", "what a pixel shows"),
     ("region", "parts of a larger frame"),
+    ("scene", "scenes as text"),
     ("render", "rendering into memory"),
     ("job", "rendering in the background"),
     ("output", "outputs beside the picture"),

@@ -5,6 +5,7 @@
 mod abi;
 mod c_header;
 mod contract;
+mod field_list;
 mod generated;
 mod init;
 mod json;

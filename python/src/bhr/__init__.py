@@ -48,6 +48,7 @@ from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
 from ._rays import CROSSING, HIT, PROJECTED, RAY, TRANSFER, rays
+from ._scene_text import Pictures
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -102,6 +103,7 @@ __all__ = [
     "Motion",
     "OutOfMemory",
     "OutputKind",
+    "Pictures",
     "Preset",
     "PresetMatter",
     "Projection",

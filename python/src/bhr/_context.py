@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from ._constants import AdapterFlags, Backend, Effects, Format, OutputKind, Preset, PresetMatter, Status, View
 from ._ffi import ffi
-from ._frame import Frame, _path, load
+from ._frame import Frame, _path
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
@@ -34,6 +34,7 @@ from ._names import (
     flags,
     member,
 )
+from ._scene_text import SceneText
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -59,7 +60,7 @@ _LOGGER.addHandler(logging.NullHandler())
 _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
-class Context(Tracing):
+class Context(SceneText, Tracing):
     """A scene and what traces it. A new one shows a hole of mass 1 without spin, with a golden disk, before the stars.
 
     Setting an attribute changes the scene; an attribute that is read is a copy, which can be set again after `replace`.
@@ -308,11 +309,14 @@ class Context(Tracing):
 
     def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
         """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes
-        it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left."""
+        it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left. A file's path is
+        part of what `save_scene` writes."""
+        if isinstance(picture, (str, os.PathLike)):
+            self._set(lib.bhr_set_sky_map_file, _path(picture))
+            self._targets.pop("sky", None)
+            return
         if isinstance(picture, np.ndarray):
             frame: Frame | None = Frame(picture)
-        elif isinstance(picture, (str, os.PathLike)):
-            frame = load(picture)
         elif picture is None or isinstance(picture, Frame):
             frame = picture
         else:

@@ -22,6 +22,19 @@ pub fn load(path: &Path) -> Result<Loaded> {
     read().map_err(|error| about("read", path, &error))
 }
 
+/// A file of text in UTF-8, of at most so many bytes. Errors: IO; OUT_OF_MEMORY.
+pub fn load_text(path: &Path, most: usize) -> Result<String> {
+    let read = || {
+        let mut bytes = Vec::new();
+        open(path)?.take(most as u64 + 1).read_to_end(&mut bytes).map_err(io_error)?;
+        if bytes.len() > most {
+            return Err(io_error(format!("it has more than {most} bytes")));
+        }
+        String::from_utf8(bytes).map_err(|error| io_error(format!("it is not UTF-8: {}", error.utf8_error())))
+    };
+    on_own_thread(read).map_err(|error| about("read", path, &error))
+}
+
 /// A PNG in memory, as `load` reads it. Errors: IO; OUT_OF_MEMORY.
 pub fn decode_png(bytes: &[u8]) -> Result<Loaded> {
     png::read(Cursor::new(bytes))

@@ -30,6 +30,6 @@ mod colour_tests;
 mod layer_tests;
 
 pub use layer::{Alpha, Attribute, Layer};
-pub use load::{decode_png, load};
+pub use load::{decode_png, load, load_text};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
-pub use save::{save, save_layers};
+pub use save::{save, save_layers, save_text};

@@ -6,7 +6,7 @@ use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};
 use crate::error::{Error, Result};
 use crate::image::memory::{ImageRef, PixelFormat};
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 #[derive(Clone, Copy)]
@@ -49,6 +49,17 @@ pub fn save(image: &ImageRef<'_>, alpha: Alpha, path: &Path) -> Result<()> {
             let mut file = BufWriter::new(file);
             encode(image, alpha, kind, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
+        })
+    };
+    on_own_thread(write).map_err(|error| about("write", path, &error))
+}
+
+/// Writes text to a file, which appears as in [`save`]. Errors: IO; OUT_OF_MEMORY.
+pub fn save_text(text: &str, path: &Path) -> Result<()> {
+    let write = || {
+        replace::with(path, |mut file| {
+            file.write_all(text.as_bytes()).map_err(super::support::io_error)?;
+            Ok(file)
         })
     };
     on_own_thread(write).map_err(|error| about("write", path, &error))

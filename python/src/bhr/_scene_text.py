@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The part of a context that reads and writes its scene as text, and sets what moves in it. Knows no frames."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+from ._constants import Status
+from ._ffi import ffi
+from ._frame import _path
+from ._gate import Gate
+from ._library import check, lib
+
+
+class Pictures(NamedTuple):
+    """The pictures that a scene's text asks for: picture n, from 0, shows the scene at n / rate seconds."""
+
+    width: int
+    height: int
+    #: 1 for a scene that does not move.
+    count: int
+    #: Pictures a second.
+    rate: float
+
+
+class SceneText:
+    """The methods of Context for scenes as text."""
+
+    __slots__ = ()
+
+    _gate: Gate
+    _targets: dict[str, Any]
+
+    def _call(self, function: Any, value: Any) -> None:
+        with self._gate as context:
+            check(function(context, value))
+
+    def load(self, path: str | os.PathLike[str]) -> None:
+        """Sets the whole scene from a file, as `save` writes one or as docs/scenes.md describes it. After an error,
+        which has line and column, the scene is as it was."""
+        self._call(lib.bhr_scene_load_file, _path(path))
+        self._targets.pop("sky", None)
+
+    def load_text(self, text: str) -> None:
+        """Sets the whole scene from text, as `load` does from a file. Its paths are relative to the current folder."""
+        given = text.encode()
+        with self._gate as context:
+            check(lib.bhr_scene_load(context, given, len(given)))
+        self._targets.pop("sky", None)
+
+    def at(self, seconds: float) -> None:
+        """Sets what moves in the scene that was loaded last to a time, in seconds of the film."""
+        self._call(lib.bhr_scene_at, seconds)
+
+    @property
+    def pictures(self) -> Pictures:
+        """The pictures that the scene that was loaded last asks for."""
+        width, height, count = (ffi.new("uint32_t *") for _ in range(3))
+        rate = ffi.new("double *")
+        with self._gate as context:
+            check(lib.bhr_scene_pictures(context, width, height, count, rate))
+        return Pictures(width[0], height[0], count[0], rate[0])
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the scene as it is set, with what moves in it, to a file that `load` reads back bit by bit."""
+        self._call(lib.bhr_scene_save_file, _path(path))
+
+    def save_text(self) -> str:
+        """The text that `save` writes; its paths are absolute."""
+        size = ffi.new("size_t *")
+        with self._gate as context:
+            while True:
+                check(lib.bhr_scene_save(context, ffi.NULL, 0, size))
+                text = ffi.new("char[]", size[0] + 1)
+                status = lib.bhr_scene_save(context, text, len(text), size)
+                # Another thread may have set a scene in between whose text is longer: again.
+                if status != Status.INVALID_ARGUMENT:
+                    check(status)
+                    return ffi.string(text).decode()

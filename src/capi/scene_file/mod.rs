@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Scenes as text: all that setters take, under the API's names, in TOML, with values that change with time.
+//! docs/scenes.md describes it. Text is read into plain structs of the API, and those into a scene by the same checks
+//! as the setters'; the list of names is `field_list`, made from the structs. Knows no context and no pointers.
+
+mod values;
+mod tracks;
+mod read;
+mod write;
+mod attributes;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use crate::image;
+use crate::scene::{Region, Scene};
+use crate::sky::MapFile;
+pub use attributes::parameters;
+use std::path::{Path, PathBuf};
+use tracks::Track;
+pub use values::Render;
+use values::{Misfit, Values};
+
+/// The format that is written, and the newest that is read.
+pub const FORMAT: u64 = 1;
+
+/// The largest text that is read.
+pub const MOST_BYTES: usize = 8 << 20;
+
+/// A scene as text has it: values, and what moves.
+#[derive(Clone)]
+pub struct SceneFile {
+    values: Values,
+    tracks: Vec<Track>,
+    map: Option<PathBuf>,
+}
+
+/// A scene at a moment, with what a context holds beside it.
+pub struct Moment {
+    pub scene: Scene,
+    pub region: Option<Region>,
+}
+
+impl SceneFile {
+    /// Reads a scene's text; paths in it are relative to `folder`. Errors: INVALID_ARGUMENT with line and column for
+    /// text that is no scene: unknown names, other types, numbers out of range, also of keys; INVALID_STATE where a
+    /// camera cannot move as it is to.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self> {
+        read::read(text, folder)
+    }
+
+    /// Reads a scene's file, as [`Self::parse`]. Errors: as there, with the path; IO.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = image::load_text(path, MOST_BYTES)?;
+        let about = |error: Error| Error::new(error.kind, format!("{}: {}", path.display(), error.message));
+        Self::parse(&text, path.parent().unwrap_or(Path::new(""))).map_err(about)
+    }
+
+    /// The scene as it is, without anything that moves.
+    pub fn of(scene: &Scene, region: Option<Region>, map: Option<&MapFile>) -> Result<Self> {
+        let map = match (&scene.sky_map, map) {
+            (None, _) => None,
+            (Some(shown), Some(file)) if file.is_of(shown) => Some(file.path().to_owned()),
+            (Some(_), _) => {
+                return Err(Error::unsupported(
+                    "the sky's map has no path, as it was set from memory: set it by bhr_set_sky_map_file instead",
+                ));
+            }
+        };
+        if scene.sky_picture.is_some() {
+            return Err(Error::unsupported("the sky's map is a target on the GPU, which has no path"));
+        }
+        Ok(Self { values: Values::of(scene, region), tracks: Vec::new(), map })
+    }
+
+    /// The scene as it is; what moves in `self` moves on, and is as it was read.
+    pub fn updated(&self, scene: &Scene, region: Option<Region>, map: Option<&MapFile>) -> Result<Self> {
+        let mut now = Self::of(scene, region, map)?;
+        now.values.render = self.values.render;
+        if self.moves_camera() {
+            now.values.shots.clone_from(&self.values.shots);
+            // Time that passes on a world line is in the scene's time, but not in the text's.
+            if self.values.shots.iter().any(|shot| shot.path.is_some()) {
+                now.values.moment.time = self.values.moment.time;
+            }
+        }
+        let is_there = |track: &&Track| now.values.bytes(track.section).is_some();
+        now.tracks = self.tracks.iter().filter(is_there).cloned().collect();
+        Ok(now)
+    }
+
+    /// The scene's text. Paths below `folder`, where one is given, are relative to it. Errors: UNSUPPORTED for a path
+    /// that is not UTF-8.
+    pub fn text(&self, folder: Option<&Path>) -> Result<String> {
+        write::write(self, folder)
+    }
+
+    /// The pictures that the text asks for, if it does.
+    pub fn render(&self) -> Option<Render> {
+        self.values.render
+    }
+
+    /// The file of the sky's map.
+    pub fn map(&self) -> Option<&Path> {
+        self.map.as_deref()
+    }
+
+    /// Whether anything is another at another time.
+    pub fn moves(&self) -> bool {
+        self.moves_camera() || !self.tracks.is_empty()
+    }
+
+    fn moves_camera(&self) -> bool {
+        let shots = &self.values.shots;
+        shots.len() > 1
+            || shots.iter().any(values::Shot::is_derived)
+            || self.tracks.iter().any(|track| track.section.shot().is_some())
+    }
+
+    /// The whole scene at a time, in seconds. What no text holds (the sky's map, occluders) is that of `scene`. Errors:
+    /// as [`Self::parse`], without line and column.
+    pub fn at(&self, seconds: f64, scene: &Scene) -> Result<Moment> {
+        self.evaluated(self.values.clone(), seconds, scene).map_err(|misfit| explained(misfit, seconds))
+    }
+
+    /// The scene, in which what moves is as it is at a time, and the rest as it was. Errors: as [`Self::at`];
+    /// INVALID_STATE where what moves is no more there.
+    pub fn moved(&self, seconds: f64, scene: &Scene, region: Option<Region>) -> Result<Moment> {
+        let mut values = Values::of(scene, region);
+        if self.moves_camera() {
+            values.shots.clone_from(&self.values.shots);
+            if self.values.shots.iter().any(|shot| shot.path.is_some()) {
+                values.moment.time = self.values.moment.time;
+            }
+        }
+        self.evaluated(values, seconds, scene).map_err(|misfit| explained(misfit, seconds))
+    }
+
+    fn evaluated(&self, mut values: Values, seconds: f64, scene: &Scene) -> Result<Moment, Misfit> {
+        for track in &self.tracks {
+            let Some(value) = track.value_at(seconds) else { continue };
+            let Some(bytes) = values.bytes_mut(track.section) else {
+                let gone = format!("the scene file moves its {}, and the scene has none now", track.field.name);
+                return Err((track.section, Error::state(gone)));
+            };
+            track.field.set(bytes, &value);
+        }
+        let (scene, region) = values.set_in(scene, seconds)?;
+        Ok(Moment { scene, region })
+    }
+}
+
+/// A misfit as hosts read it.
+fn explained((section, error): Misfit, seconds: f64) -> Error {
+    Error::new(error.kind, format!("{} at {seconds} s: {}", section.name(), error.message))
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! src/capi/field_list.rs has the fields of the structs that say what a scene is, as include/bhr.json has them: scene
+//! files and the attributes of saved outputs know a field as soon as its struct has it.
+
+use crate::c_header::{root, run};
+use crate::json::{committed, entries, text};
+use serde_json::Value;
+use std::fmt::Write;
+use std::process::Command;
+
+/// The structs, with the file of src/capi that has each.
+const STRUCTS: [(&str, &str); 8] = [
+    ("BhrCamera", "camera"),
+    ("BhrDisk", "disk"),
+    ("BhrVolume", "volume"),
+    ("BhrHotSpot", "volume"),
+    ("BhrSky", "sky"),
+    ("BhrFilm", "film"),
+    ("BhrQuality", "quality"),
+    ("BhrRegion", "region"),
+];
+
+/// Enumerations and bits that no field of these has.
+const WORDS: [(&str, &str); 3] =
+    [("VIEWS", "BhrView"), ("PRESETS", "BhrPreset"), ("PRESET_MATTERS", "BhrPresetMatter")];
+
+const OPENING: &str = "// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The fields of structs of the API that say what a scene is, and the words of its constants. Made by
+//! tests/header/field_list.rs from include/bhr.json; do not edit.
+
+";
+
+/// The names of constants without what all of them begin with, in lower case, and their values, as a list of Rust.
+fn words(names: &[&str], value: impl Fn(&str) -> String) -> String {
+    let common = names.iter().fold(names[0].len(), |common, name| {
+        names[0].bytes().zip(name.bytes()).take(common).take_while(|(a, b)| a == b).count()
+    });
+    let prefix = names[0][..common].rfind('_').unwrap() + 1;
+    let word = |name: &&str| format!("(\"{}\", {})", name[prefix..].to_lowercase(), value(name));
+    format!("&[{}]", names.iter().map(word).collect::<Vec<_>>().join(", "))
+}
+
+fn value_of(json: &Value, name: &str) -> String {
+    entries(json, "constants").iter().find(|constant| constant["name"] == name).unwrap()["value"].to_string()
+}
+
+fn words_of(json: &Value, enumeration: &str) -> String {
+    let list = entries(json, "enumerations").iter().find(|entry| entry["name"] == enumeration).unwrap();
+    let names = list["constants"].as_array().unwrap().iter().map(text).collect::<Vec<_>>();
+    words(&names, |name| value_of(json, name))
+}
+
+/// The bits of a field or a parameter, by its place; `None`: it is a number.
+fn bits_of(json: &Value, place: &str) -> Option<String> {
+    let is_its = |constant: &&Value| constant["bits_of"] == place;
+    let names = entries(json, "constants").iter().filter(is_its).map(|constant| text(&constant["name"]));
+    let names = names.collect::<Vec<_>>();
+    (!names.is_empty()).then(|| words(&names, |name| value_of(json, name)))
+}
+
+fn kind(json: &Value, object: &str, field: &Value) -> String {
+    let is_angle = text(&field["documentation"]).to_lowercase().contains("radians");
+    match text(&field["base"]) {
+        "double" if is_angle => "Kind::Angle".into(),
+        "double" => format!("Kind::Numbers({})", field["array"].as_u64().unwrap_or(1)),
+        "uint64_t" => "Kind::Seed".into(),
+        "uint32_t" => match bits_of(json, &format!("{object}.{}", text(&field["name"]))) {
+            Some(bits) => format!("Kind::Bits({bits})"),
+            None => "Kind::Count".into(),
+        },
+        enumeration => format!("Kind::Word({})", words_of(json, enumeration)),
+    }
+}
+
+fn generate(json: &Value) -> String {
+    let mut file = OPENING.to_owned();
+    let mut uses = STRUCTS.map(|(name, module)| format!("use super::{module}::{name};")).to_vec();
+    uses.push("use super::fields::{Described, Field, Kind, Words};".into());
+    uses.push("use std::mem::offset_of;".into());
+    file += &uses.join("\n");
+    for (constant, enumeration) in WORDS {
+        let words = words_of(json, enumeration);
+        write!(file, "\n\n/// The words of {enumeration}.\npub(super) const {constant}: Words<i32> = {words};")
+            .unwrap();
+    }
+    let effects = bits_of(json, "bhr_set_effects.effects").unwrap();
+    write!(file, "\n\n/// The words of BHR_EFFECT_*.\npub(super) const EFFECTS: Words<u32> = {effects};").unwrap();
+    for (name, _) in STRUCTS {
+        write!(
+            file,
+            "\n\n// SAFETY: repr(C), without padding, numbers only, as for Versioned.\n\
+             unsafe impl Described for {name} {{ const FIELDS: &'static [Field] = &["
+        )
+        .unwrap();
+        let object = entries(json, "structs").iter().find(|object| object["name"] == name).unwrap();
+        for field in object["fields"].as_array().unwrap() {
+            let member = text(&field["name"]);
+            if member != "struct_size" && !member.starts_with("reserved") {
+                let kind = kind(json, name, field);
+                write!(file, "Field {{ name: \"{member}\", offset: offset_of!({name}, {member}), kind: {kind} }},")
+                    .unwrap();
+            }
+        }
+        file += "]; }";
+    }
+    file + "\n"
+}
+
+/// With BHR_UPDATE_HEADER set, this brings src/capi/field_list.rs up to date, with the header
+/// (tests/header/generated.rs).
+#[test]
+fn the_committed_field_list_is_the_generated_one() {
+    let folder = crate::c_header::scratch("field_list");
+    let (file, path) = (folder.join("field_list.rs"), root().join("src/capi/field_list.rs"));
+    std::fs::write(&file, generate(&committed())).unwrap();
+    run(Command::new("rustfmt").args(["--edition", "2024", "--config-path"]).arg(root()).arg(&file));
+    let generated = std::fs::read_to_string(&file).unwrap();
+    if std::env::var_os("BHR_UPDATE_HEADER").is_some() {
+        std::fs::write(&path, &generated).unwrap();
+    }
+    assert!(
+        std::fs::read_to_string(&path).unwrap() == generated,
+        "src/capi/field_list.rs is not what include/bhr.json says; bring it up to date with\n\
+         BHR_UPDATE_HEADER=1 cargo test --profile checked --locked --test header committed, twice"
+    );
+}
