@@ -44,3 +44,6 @@ mod thread_state;
 pub mod tracer;
 mod tracers;
 pub mod window;
+
+#[doc(hidden)]
+pub use capi::scene_file;

@@ -107,7 +107,8 @@ cmake_builds() (
 # besides: cargo clippy would check all dependencies once more, for a minute and a half of a processor. Cargo keeps what
 # it builds apart from what plain rustc does. Its warnings are errors in tests/rust/run.
 cargo_test() {
-    RUSTC_WORKSPACE_WRAPPER=clippy-driver cargo test --profile checked --locked --manifest-path "$root/Cargo.toml" "$@"
+    RUSTC_WORKSPACE_WRAPPER=clippy-driver \
+        cargo test --profile checked --locked --features cli --manifest-path "$root/Cargo.toml" "$@"
 }
 
 # Builds the libraries that the C tests and examples need. cargo test makes the checked one: cargo build would make

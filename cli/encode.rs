@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Threads that write frames to files while the next ones are rendered. Frames that wait hold their pixels: there are
+//! only so many of these, which bounds the memory. Knows no tracer.
+
+use crate::ending::Ending;
+use crate::manifest::Made;
+use bhr::image::{Alpha, Attribute, ImageRef, Layer, Layout, save, save_layers};
+use bhr::scene::Output;
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// The most bytes of pixels that wait to be written.
+const MOST_BYTES: usize = 4 << 30;
+
+/// Pixels of a frame, aligned to every format's channels.
+pub type Pixels = Vec<u32>;
+
+/// A frame that is to be written.
+pub struct Frame {
+    pub pixels: Pixels,
+    pub layout: Layout,
+    pub transparent: bool,
+    pub attributes: Vec<(String, Attribute)>,
+    pub made: Made,
+    pub manifest: PathBuf,
+    /// Held while the frame is being made.
+    pub claim: Claim,
+}
+
+/// A lock on a frame, which tells other programs that it is being made. The system ends it with this program, however
+/// that ends.
+pub struct Claim {
+    pub path: PathBuf,
+    pub file: Option<File>,
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // Removed before it is unlocked: who waits for it then has a file that is none's, and finds the frame there.
+        let _ = std::fs::remove_file(&self.path);
+        drop(self.file.take());
+    }
+}
+
+/// A frame whose file is there, or what is wrong with it.
+type Written = Result<Made, Ending>;
+
+pub struct Encoders {
+    threads: Vec<JoinHandle<()>>,
+    orders: Option<SyncSender<Frame>>,
+    written: Receiver<Written>,
+    /// Pixels that no frame needs now.
+    free: Receiver<Pixels>,
+}
+
+impl Encoders {
+    /// Threads for frames of so many bytes.
+    pub fn new(threads: usize, frame_bytes: usize) -> Result<Self, Ending> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { cores } else { threads };
+        let buffers = (MOST_BYTES / frame_bytes.max(1)).clamp(2, threads + 2);
+        let (give_back, free) = channel();
+        for _ in 0..buffers {
+            let mut pixels = Pixels::new();
+            let count = frame_bytes.div_ceil(4);
+            // As many as there is memory for, and one at least.
+            if pixels.try_reserve_exact(count).is_err() {
+                break;
+            }
+            pixels.resize(count, 0);
+            let _ = give_back.send(pixels);
+        }
+        let (orders, taken) = sync_channel::<Frame>(buffers);
+        let taken = Arc::new(Mutex::new(taken));
+        let (tell, written) = channel();
+        let threads = (0..threads.min(buffers))
+            .map(|_| {
+                let (taken, tell, give_back) = (taken.clone(), tell.clone(), give_back.clone());
+                std::thread::Builder::new()
+                    .name("bhr encoder".into())
+                    .spawn(move || work(&taken, &tell, &give_back))
+                    .map_err(|error| {
+                        Ending::from(bhr::error::Error::new(
+                            bhr::error::ErrorKind::OutOfMemory,
+                            format!("a thread cannot be started: {error}"),
+                        ))
+                    })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { threads, orders: Some(orders), written, free })
+    }
+
+    /// Pixels for a frame, when there are some. Errors: there is no memory for one frame.
+    pub fn pixels(&self) -> Result<Pixels, Ending> {
+        let none = || bhr::error::Error::new(bhr::error::ErrorKind::OutOfMemory, "no memory for the pixels of a frame");
+        self.free.recv().map_err(|_| none().into())
+    }
+
+    pub fn order(&self, frame: Frame) -> Result<(), Ending> {
+        let gone = || Ending::from(bhr::error::Error::internal("the threads that write files have ended"));
+        self.orders.as_ref().ok_or_else(gone)?.send(frame).map_err(|_| gone())
+    }
+
+    /// The frames that have been written since this was asked last.
+    pub fn written(&self) -> impl Iterator<Item = Written> {
+        self.written.try_iter()
+    }
+
+    /// Waits for all frames that were ordered; those that have been written since the last question.
+    pub fn finish(mut self) -> Vec<Written> {
+        self.orders = None;
+        for thread in self.threads.drain(..) {
+            // A thread's panic has been told, and its frame is not there.
+            let _ = thread.join();
+        }
+        self.written.try_iter().collect()
+    }
+}
+
+fn work(orders: &Mutex<Receiver<Frame>>, tell: &Sender<Written>, give_back: &Sender<Pixels>) {
+    loop {
+        // The lock ends with this statement: the others get the next frames while this one is written.
+        let order = orders.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        let Ok(mut frame) = order else { return };
+        let result = write(&frame);
+        let pixels = std::mem::take(&mut frame.pixels);
+        let Frame { made, claim, .. } = frame;
+        drop(claim);
+        // Where nobody listens any more the program is ending.
+        let _ = give_back.send(pixels);
+        let _ = tell.send(result.map(|()| made));
+    }
+}
+
+fn write(frame: &Frame) -> Result<(), Ending> {
+    let image = ImageRef::new(frame.layout, bytemuck::cast_slice(&frame.pixels))?;
+    let file = &frame.made.file;
+    if frame.layout.format.is_developed() {
+        save(&image, if frame.transparent { Alpha::Premultiplied } else { Alpha::AsInFile }, file)?;
+    } else {
+        let channels = Output::of_view(bhr::scene::View::Light).channels();
+        save_layers(&[Layer { channels, image }], &frame.attributes, file)?;
+    }
+    frame.made.note(&frame.manifest)
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! bhr, the program: renders scene files to pictures and films, on one machine or on many. The commands and their
+//! arguments; what each does is in a file of its own. Knows no scene and no pixel.
+
+mod ending;
+mod frames;
+mod manifest;
+mod progress;
+mod signals;
+mod encode;
+mod open;
+mod look;
+mod render;
+mod join;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use ending::Ending;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const AFTER: &str = "\
+Exit statuses: 0 done; 64 a wrong argument; 65 a scene with a mistake; 70 a bug in bhr; 74 a file that cannot be read
+or written; 75 try again (no adapter, no memory, a device that was lost more than three times); 130 and 143 after
+SIGINT and SIGTERM. docs/farms.md has more.";
+
+fn scene() -> Arg {
+    Arg::new("scene").required(true).value_name("SCENE").value_parser(value_parser!(PathBuf)).help("A scene file")
+}
+
+fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).help(help)
+}
+
+fn device() -> [Arg; 2] {
+    [
+        option("backend", "NAME", "auto, cpu, vulkan, metal, d3d12 or gl").default_value("auto"),
+        option("adapter", "N", "The adapter of this number in `bhr adapters`").value_parser(value_parser!(u32)),
+    ]
+}
+
+fn command() -> Command {
+    let render = Command::new("render")
+        .about("Renders frames of a scene to files; those that are there already are passed over")
+        .arg(scene())
+        .arg(
+            option("out", "FILE", "A .png or .exr file; ###### becomes the frame's number in as many digits")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(option("frames", "LIST", "Such as 0-99, 0-99x3 or 5,7,20-30; all frames of the scene without it"))
+        .arg(option("size", "WxH", "Pixels, instead of the scene's"))
+        .arg(option("tile", "X,Y,W,H", "Only this part of each frame"))
+        .arg(option("samples", "N", "Rays of a pixel, instead of the scene's").value_parser(value_parser!(u32)))
+        .arg(
+            option("float", "", "Pixels of 32 bits in .exr files, instead of 16")
+                .num_args(0)
+                .action(ArgAction::SetTrue),
+        )
+        .arg(
+            option("transparent", "", "Without the sky; alpha says where it was")
+                .num_args(0)
+                .action(ArgAction::SetTrue),
+        )
+        .arg(option("again", "", "Renders frames that are there as well").num_args(0).action(ArgAction::SetTrue))
+        .arg(
+            option("dry-run", "", "Renders three small frames, and says what the whole takes")
+                .num_args(0)
+                .action(ArgAction::SetTrue),
+        )
+        .arg(option("encoders", "N", "Threads that write files; 0: one a core").value_parser(value_parser!(usize)))
+        .arg(option("progress", "KIND", "auto, bar, plain, json, openjd or none").default_value("auto"))
+        .args(device());
+    Command::new("bhr")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Renders black holes: scene files to pictures and films")
+        .after_help(AFTER)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(render)
+        .subcommand(
+            Command::new("check").about("Reads a scene and tries every frame of it, without rendering").arg(scene()),
+        )
+        .subcommand(
+            Command::new("info")
+                .about("Says what a scene is at a time, as JSON")
+                .arg(scene())
+                .arg(option("at", "SECONDS", "The time").default_value("0").value_parser(value_parser!(f64))),
+        )
+        .subcommand(Command::new("adapters").about("Lists the adapters of this machine"))
+        .subcommand(
+            Command::new("trace")
+                .about("Follows the ray of one pixel, and says where its light came from, as JSON")
+                .arg(scene())
+                .arg(option("pixel", "X,Y", "The pixel's place; 0,0 is the frame's top-left corner").required(true))
+                .arg(option("size", "WxH", "Pixels, instead of the scene's"))
+                .arg(option("at", "SECONDS", "The time").default_value("0").value_parser(value_parser!(f64)))
+                .args(device()),
+        )
+        .subcommand(
+            Command::new("join")
+                .about("Puts the tiles of a frame together, which `bhr render --tile` has made")
+                .arg(
+                    Arg::new("tiles")
+                        .required(true)
+                        .num_args(1..)
+                        .value_name("TILE")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("The tiles' files; the manifests beside them say where each belongs"),
+                )
+                .arg(option("out", "FILE", "A .png or .exr file").required(true).value_parser(value_parser!(PathBuf))),
+        )
+}
+
+fn run(matches: &ArgMatches) -> Result<(), Ending> {
+    match matches.subcommand() {
+        Some(("render", given)) => render::run(given),
+        Some(("check", given)) => look::check(given),
+        Some(("info", given)) => look::info(given),
+        Some(("adapters", _)) => look::adapters(),
+        Some(("trace", given)) => look::trace(given),
+        Some(("join", given)) => join::run(given),
+        _ => Err(Ending::usage("no command")),
+    }
+}
+
+fn main() -> ExitCode {
+    let matches = match command().try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => {
+            // Help and version are no mistakes. Where nobody reads what is printed there is nobody to tell.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(Ending::USAGE) } else { ExitCode::SUCCESS };
+        }
+    };
+    match run(&matches) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(ending) => {
+            ending.tell();
+            ExitCode::from(ending.status)
+        }
+    }
+}

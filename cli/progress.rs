@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! How far the program is, as people and farms read it: a bar on a terminal, lines of text, JSON, or OpenJD's. Knows no
+//! scene.
+
+use crate::ending::Ending;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+
+pub enum Progress {
+    None,
+    Bar(ProgressBar),
+    Plain(Count),
+    Json(Count),
+    /// Lines that Open Job Description's runner reads from stdout: openjd_progress, openjd_status.
+    OpenJd(Count),
+}
+
+/// Frames that are done, those that were there already among them.
+#[derive(Clone, Copy, Default)]
+pub struct Count {
+    done: u64,
+    total: u64,
+}
+
+impl Count {
+    fn percent(self) -> f64 {
+        100.0 * self.done as f64 / self.total.max(1) as f64
+    }
+}
+
+impl Progress {
+    pub fn new(kind: &str, total: u64) -> Result<Self, Ending> {
+        let count = Count { done: 0, total };
+        let bar = || {
+            let style = "{bar:40} {pos}/{len} frames, {elapsed} gone, {eta} to go  {msg}";
+            let bar = ProgressBar::new(total);
+            bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        };
+        Ok(match kind {
+            "auto" if std::io::stderr().is_terminal() => Self::Bar(bar()),
+            "bar" => Self::Bar(bar()),
+            "auto" | "plain" => Self::Plain(count),
+            "json" => Self::Json(count),
+            "openjd" => Self::OpenJd(count),
+            "none" => Self::None,
+            _ => {
+                return Err(Ending::usage(format!(
+                    "--progress {kind}: it must be auto, bar, plain, json, openjd or none"
+                )));
+            }
+        })
+    }
+
+    /// A frame's file is there: from this run after so many seconds, or from before.
+    pub fn frame(&mut self, frame: u32, file: &Path, seconds: Option<f64>) {
+        let took = seconds.map_or("was there".into(), |seconds| format!("{seconds:.2} s"));
+        let file = file.display();
+        match self {
+            Self::None => {}
+            Self::Bar(bar) => {
+                bar.set_message(file.to_string());
+                bar.inc(1);
+            }
+            Self::Plain(count) => {
+                count.done += 1;
+                say(&format!("frame {frame}, {} of {}: {file} ({took})", count.done, count.total));
+            }
+            Self::Json(count) => {
+                count.done += 1;
+                let line = json!({"frame": frame, "file": file.to_string(), "seconds": seconds, "done": count.done,
+                                  "total": count.total});
+                say(&line.to_string());
+            }
+            Self::OpenJd(count) => {
+                count.done += 1;
+                say(&format!("openjd_progress: {:.2}", count.percent()));
+                say(&format!("openjd_status: frame {frame}: {file} ({took})"));
+            }
+        }
+    }
+
+    pub fn end(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A line on stdout. A reader that has gone is no reason to stop rendering.
+pub fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
