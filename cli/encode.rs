@@ -66,7 +66,7 @@ impl Encoders {
         for _ in 0..buffers {
             let mut pixels = Pixels::new();
             let count = frame_bytes.div_ceil(4);
-            // As many as there is memory for, and one at least.
+            // Frames get as many buffers as there is memory for.
             if pixels.try_reserve_exact(count).is_err() {
                 break;
             }

@@ -16,7 +16,8 @@ pub fn list(text: &str) -> Result<Vec<u32>, Ending> {
     let mut frames = Vec::new();
     for part in text.split(',').map(str::trim) {
         let number = |digits: &str| digits.trim().parse::<u32>().map_err(|_| wrong(part));
-        let (range, step) = match part.split_once('x') {
+        // OpenJD writes a step behind a colon.
+        let (range, step) = match part.split_once(['x', ':']) {
             Some((range, step)) => (range, number(step)?),
             None => (part, 1),
         };
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn lists_have_every_frame_once() {
-        assert_eq!(list("0-9x3, 4,5-6").unwrap(), [0, 3, 6, 9, 4, 5]);
+        assert_eq!(list("0-9x3, 4,5-6:1").unwrap(), [0, 3, 6, 9, 4, 5]);
         assert_eq!(list("7").unwrap(), [7]);
         for wrong in ["", "a", "3-1", "1-9x0", "1-", "-3", "1,,2", "0-4294967295"] {
             assert!(list(wrong).is_err(), "{wrong}");

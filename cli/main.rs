@@ -41,6 +41,7 @@ fn device() -> [Arg; 2] {
 fn command() -> Command {
     let render = Command::new("render")
         .about("Renders frames of a scene to files; those that are there already are passed over")
+        .args_override_self(true)
         .arg(scene())
         .arg(
             option("out", "FILE", "A .png or .exr file; ###### becomes the frame's number in as many digits")

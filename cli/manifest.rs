@@ -67,8 +67,8 @@ impl Made {
     }
 }
 
-/// What a manifest says of each file. A last line that a program was killed in, or any other that is no object, says
-/// nothing.
+/// The last line of each file in a manifest. Lines that are no object, such as one that a program was killed in, count
+/// as none.
 pub struct Manifest(HashMap<String, Value>);
 
 impl Manifest {

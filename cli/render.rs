@@ -175,7 +175,7 @@ impl Run<'_> {
                     others.push(frame);
                     continue;
                 };
-                // It may have been finished between the two questions.
+                // Another program may have finished the frame between the two questions.
                 if file.exists() && self.is_there(&file, &Manifest::read(&self.names.manifest())) {
                     progress.frame(frame, &file, None);
                     continue;

@@ -106,6 +106,8 @@ missing_packages() {
     missing luajit luajit
     luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing doxygen doxygen
+    missing openmpi-bin mpirun
+    missing libopenmpi-dev mpicc
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }

@@ -35,9 +35,11 @@ pub fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
     for folder in [
         ".ci",
         "benches",
+        "cli",
         "docs",
         "examples-c",
         "examples-other",
+        "farm",
         "include",
         "packaging",
         "python",
