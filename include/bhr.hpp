@@ -48,7 +48,6 @@
 #include "bhr/context.hpp"
 #include "bhr/image.hpp"
 #include "bhr/output.hpp"
-#include "bhr/preset.hpp"
 #include "bhr/result.hpp"
 #include "bhr/scene.hpp"
 

@@ -7,19 +7,6 @@
 
 namespace bhr {
 
-/// Flags for bhr_camera_from_matrices and bhr_camera_matrices.
-enum class MatrixFlags : std::uint32_t {
-    none = 0,
-    row_major = BHR_MATRIX_ROW_MAJOR,
-    y_down = BHR_MATRIX_Y_DOWN,
-    zero_to_one = BHR_MATRIX_ZERO_TO_ONE,
-    reversed = BHR_MATRIX_REVERSED,
-    forward_z = BHR_MATRIX_FORWARD_Z,
-};
-namespace detail {
-template <> inline constexpr bool is_bits<MatrixFlags> = true;
-} // namespace detail
-
 /// Sixteen numbers, column by column unless MatrixFlags::row_major says otherwise.
 using Matrix = std::array<double, 16>;
 
@@ -30,25 +17,7 @@ struct CameraMatrices {
 };
 
 /// BhrCamera, with the defaults of bhr_camera_init.
-struct Camera {
-    std::uint32_t struct_size;
-    Projection projection;
-    Vector position;
-    Vector forward;
-    Vector up;
-    double fov_y;
-    Motion motion;
-    std::uint32_t reserved;
-    Vector velocity;
-    double tan_left;
-    double tan_right;
-    double tan_down;
-    double tan_up;
-    std::array<double, 2> jitter;
-    double eye_distance;
-    Eye eye;
-    std::uint32_t reserved2;
-
+struct Camera : CameraFields {
     Camera() noexcept { detail::defaults(*this, bhr_camera_init); }
     BhrCamera c() const noexcept { return detail::as_c<BhrCamera>(*this); }
 
@@ -91,9 +60,6 @@ struct Camera {
         return done;
     }
 };
-
-/// The highest order for Context::project_point.
-inline constexpr std::uint32_t max_image_order = BHR_MAX_IMAGE_ORDER;
 
 /// BhrProjectedPoint.
 struct ProjectedPoint {

@@ -7,7 +7,6 @@
 #include "handles.hpp"
 #include "image.hpp"
 #include "output.hpp"
-#include "preset.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -7,20 +7,6 @@
 
 namespace bhr {
 
-/// Most outputs of one call.
-inline constexpr std::size_t max_outputs = BHR_MAX_OUTPUTS;
-
-/// BhrOutputKind.
-enum class OutputKind : std::int32_t {
-    light = BHR_OUTPUT_LIGHT,
-    depth = BHR_OUTPUT_DEPTH,
-    sky = BHR_OUTPUT_SKY,
-    transmission = BHR_OUTPUT_TRANSMISSION,
-    position = BHR_OUTPUT_POSITION,
-    disk = BHR_OUTPUT_DISK,
-    view = BHR_OUTPUT_VIEW,
-};
-
 /// The format that a kind takes: of light any that goes with the view, here four floats.
 constexpr Format output_format(OutputKind kind) noexcept {
     switch (kind) {

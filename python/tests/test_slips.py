@@ -13,7 +13,7 @@ import typing
 import bhr
 import numpy as np
 import pytest
-from bhr import _names, interop
+from bhr import _constants, interop
 
 SETTINGS = ["spin", "mass", "axis", "camera", "disk", "volumes", "hot_spots", "sky", "film", "quality", "effects"]
 
@@ -117,8 +117,8 @@ def test_members_of_other_enumerations_are_refused(ctx):
 
 def test_the_types_of_names_are_the_members():
     kinds = [kind for kind in vars(bhr).values() if isinstance(kind, type) and issubclass(kind, enum.IntEnum)]
-    assert set(kinds) - {bhr.Status, bhr.Fate} == set(_names.NAMES)
-    for kind, names in _names.NAMES.items():
+    assert set(kinds) - {bhr.Status, bhr.Fate} == set(_constants.NAMES)
+    for kind, names in _constants.NAMES.items():
         assert list(typing.get_args(names)) == [name.lower() for name in kind.__members__]
 
 

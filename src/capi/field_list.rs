@@ -85,7 +85,7 @@ unsafe impl Described for BhrDisk {
         Field {
             name: "reference",
             offset: offset_of!(BhrDisk, reference),
-            kind: Kind::Word(&[("hottest", 0), ("median", 1)]),
+            kind: Kind::Word(&[("at_hottest", 0), ("at_median", 1)]),
         },
         Field {
             name: "emission_law",

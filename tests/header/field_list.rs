@@ -2,6 +2,7 @@
 //! src/capi/field_list.rs has the fields of the structs that say what a scene is, as include/bhr.json has them: scene
 //! files and the attributes of saved outputs know a field as soon as its struct has it.
 
+use crate::bindings::{Member, bits, members};
 use crate::c_header::{root, run};
 use crate::json::{committed, entries, text};
 use serde_json::Value;
@@ -30,32 +31,10 @@ const OPENING: &str = "// SPDX-License-Identifier: MIT OR Apache-2.0
 
 ";
 
-/// The names of constants without what all of them begin with, in lower case, and their values, as a list of Rust.
-fn words(names: &[&str], value: impl Fn(&str) -> String) -> String {
-    let common = names.iter().fold(names[0].len(), |common, name| {
-        names[0].bytes().zip(name.bytes()).take(common).take_while(|(a, b)| a == b).count()
-    });
-    let prefix = names[0][..common].rfind('_').unwrap() + 1;
-    let word = |name: &&str| format!("(\"{}\", {})", name[prefix..].to_lowercase(), value(name));
-    format!("&[{}]", names.iter().map(word).collect::<Vec<_>>().join(", "))
-}
-
-fn value_of(json: &Value, name: &str) -> String {
-    entries(json, "constants").iter().find(|constant| constant["name"] == name).unwrap()["value"].to_string()
-}
-
-fn words_of(json: &Value, enumeration: &str) -> String {
-    let list = entries(json, "enumerations").iter().find(|entry| entry["name"] == enumeration).unwrap();
-    let names = list["constants"].as_array().unwrap().iter().map(text).collect::<Vec<_>>();
-    words(&names, |name| value_of(json, name))
-}
-
-/// The bits of a field or a parameter, by its place; `None`: it is a number.
-fn bits_of(json: &Value, place: &str) -> Option<String> {
-    let is_its = |constant: &&Value| constant["bits_of"] == place;
-    let names = entries(json, "constants").iter().filter(is_its).map(|constant| text(&constant["name"]));
-    let names = names.collect::<Vec<_>>();
-    (!names.is_empty()).then(|| words(&names, |name| value_of(json, name)))
+/// Words with their values, as a list of Rust.
+fn words(members: &[Member]) -> String {
+    let word = |member: &Member| format!("(\"{}\", {})", member.word.to_lowercase(), member.value);
+    format!("&[{}]", members.iter().map(word).collect::<Vec<_>>().join(", "))
 }
 
 fn kind(json: &Value, object: &str, field: &Value) -> String {
@@ -64,11 +43,11 @@ fn kind(json: &Value, object: &str, field: &Value) -> String {
         "double" if is_angle => "Kind::Angle".into(),
         "double" => format!("Kind::Numbers({})", field["array"].as_u64().unwrap_or(1)),
         "uint64_t" => "Kind::Seed".into(),
-        "uint32_t" => match bits_of(json, &format!("{object}.{}", text(&field["name"]))) {
-            Some(bits) => format!("Kind::Bits({bits})"),
-            None => "Kind::Count".into(),
+        "uint32_t" => match &bits(json, &format!("{object}.{}", text(&field["name"])))[..] {
+            [] => "Kind::Count".into(),
+            bits => format!("Kind::Bits({})", words(bits)),
         },
-        enumeration => format!("Kind::Word({})", words_of(json, enumeration)),
+        enumeration => format!("Kind::Word({})", words(&members(json, enumeration))),
     }
 }
 
@@ -79,11 +58,11 @@ fn generate(json: &Value) -> String {
     uses.push("use std::mem::offset_of;".into());
     file += &uses.join("\n");
     for (constant, enumeration) in WORDS {
-        let words = words_of(json, enumeration);
+        let words = words(&members(json, enumeration));
         write!(file, "\n\n/// The words of {enumeration}.\npub(super) const {constant}: Words<i32> = {words};")
             .unwrap();
     }
-    let effects = bits_of(json, "bhr_set_effects.effects").unwrap();
+    let effects = words(&bits(json, "bhr_set_effects.effects"));
     write!(file, "\n\n/// The words of BHR_EFFECT_*.\npub(super) const EFFECTS: Words<u32> = {effects};").unwrap();
     for (name, _) in STRUCTS {
         write!(

@@ -3,6 +3,7 @@
 //! is linked. Traces nothing; needs a C and a C++ compiler.
 
 mod abi;
+mod bindings;
 mod c_header;
 mod contract;
 mod field_list;

@@ -47,8 +47,8 @@ const ALLOWED_TOOLS: [(&str, &str); 2] = [("cbindgen", "MPL-2.0"), ("r-efi", "MI
 const HEAD: &str = "\
 Third-party notices of bhr
 
-A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a) contains the works named
-here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by
+A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a), and the program bhr, contain
+the works named here, on one platform or another, and these notices go where they go. Made from Cargo.lock by
 tests/header/third_party.rs; do not edit.
 
 It also contains the Rust standard library, in the version of the compiler that built it: Apache-2.0 OR MIT, copyright
@@ -122,7 +122,7 @@ fn cargo(arguments: &[&str]) -> String {
 
 /// Everything in Cargo.lock, without bhr itself.
 fn crates() -> Vec<Crate> {
-    let said: Value = serde_json::from_str(&cargo(&["metadata", "--format-version", "1"])).unwrap();
+    let said: Value = serde_json::from_str(&cargo(&["metadata", "--all-features", "--format-version", "1"])).unwrap();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let packages = said["packages"].as_array().unwrap().iter().map(|package| Crate {
         name: text(&package["name"]),

@@ -17,23 +17,30 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import AdapterFlags, Backend, Effects, Format, OutputKind, Preset, PresetMatter, Status, View
+from ._constants import (
+    AdapterFlags,
+    Backend,
+    BackendLike,
+    Effects,
+    Format,
+    FormatLike,
+    OutputKind,
+    OutputKindLike,
+    Preset,
+    PresetLike,
+    PresetMatter,
+    PresetMatterLike,
+    Status,
+    View,
+    ViewLike,
+    ViewName,
+)
 from ._ffi import ffi
 from ._frame import Frame, _path
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
-from ._names import (
-    BackendLike,
-    FormatLike,
-    OutputKindLike,
-    PresetLike,
-    PresetMatterLike,
-    ViewLike,
-    ViewName,
-    flags,
-    member,
-)
+from ._names import flags, member
 from ._scene_text import SceneText
 from ._structs import (
     AdapterInfo,

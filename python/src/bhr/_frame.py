@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Format
+from ._constants import Format, FormatLike
 from ._ffi import ffi
 from ._library import check, lib
-from ._names import FormatLike, member
+from ._names import member
 from ._structs import new
 
 _DTYPES: dict[Format, type[np.generic]] = {

@@ -5,76 +5,10 @@ checkers and editors; `member` is what the library's own code reads arguments wi
 from __future__ import annotations
 
 import enum
-from typing import Any, Generic, Literal, TypeVar, Union
+from typing import Any, Generic, TypeVar
 
-from ._constants import (
-    Backend,
-    ColourMap,
-    DiskReference,
-    EmissionLaw,
-    Eye,
-    Flow,
-    Format,
-    Method,
-    Motion,
-    OutputKind,
-    Preset,
-    PresetMatter,
-    Projection,
-    Status,
-    ToneMap,
-    View,
-    VolumeResolution,
-    VolumeShape,
-)
+from ._constants import Status
 from ._library import error
-
-BackendName = Literal["auto", "cpu", "vulkan", "metal", "d3d12", "gl"]
-ColourMapName = Literal["none", "afmhot"]
-DiskReferenceName = Literal["at_hottest", "at_median"]
-EmissionLawName = Literal["isotropic", "limb_darkened"]
-EyeName = Literal["middle", "left", "right"]
-FlowName = Literal["keplerian", "angular_momentum", "outflow"]
-FormatName = Literal["rgba8_srgb", "bgra8_srgb", "rgba16f", "rgba32f", "r32f"]
-MethodName = Literal["auto", "rk4", "adaptive"]
-MotionName = Literal["static", "free_fall", "orbit", "velocity"]
-OutputKindName = Literal["light", "depth", "sky", "transmission", "position", "disk", "view"]
-PresetName = Literal["cinematic", "physical", "observatory", "teaching"]
-PresetMatterName = Literal["auto", "thin", "deep"]
-ProjectionName = Literal["perspective", "fisheye", "equirect", "cube", "frustum"]
-ToneMapName = Literal["none", "aces", "agx"]
-ViewName = Literal["light", "redshift", "order", "deflection", "steps", "metric", "optical_depth", "intensity"]
-VolumeResolutionName = Literal["full", "half"]
-VolumeShapeName = Literal["disk", "torus", "halo", "jet"]
-
-BackendLike = Union[Backend, BackendName]
-FormatLike = Union[Format, FormatName]
-OutputKindLike = Union[OutputKind, OutputKindName]
-PresetLike = Union[Preset, PresetName]
-PresetMatterLike = Union[PresetMatter, PresetMatterName]
-ProjectionLike = Union[Projection, ProjectionName]
-ViewLike = Union[View, ViewName]
-
-#: The types of the names of each enumeration; names of flags are any text, as several may be joined.
-NAMES: dict[type[enum.IntEnum], Any] = {
-    Backend: BackendName,
-    ColourMap: ColourMapName,
-    DiskReference: DiskReferenceName,
-    EmissionLaw: EmissionLawName,
-    Eye: EyeName,
-    Flow: FlowName,
-    Format: FormatName,
-    Method: MethodName,
-    Motion: MotionName,
-    OutputKind: OutputKindName,
-    Preset: PresetName,
-    PresetMatter: PresetMatterName,
-    Projection: ProjectionName,
-    ToneMap: ToneMapName,
-    View: ViewName,
-    VolumeResolution: VolumeResolutionName,
-    VolumeShape: VolumeShapeName,
-}
 
 _Member = TypeVar("_Member")
 _Name = TypeVar("_Name")

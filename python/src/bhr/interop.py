@@ -28,14 +28,14 @@ from typing import Any, ClassVar, Literal, TypeVar, Union
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Format, OutputKind, Projection, Status
+from ._constants import Format, FormatLike, OutputKind, OutputKindLike, Projection, ProjectionLike, Status, ViewName
 from ._context import Context, output_of
 from ._ffi import ffi
 from ._frame import Frame
 from ._gate import Door
 from ._job import AnyJob
 from ._library import begin, check, lib
-from ._names import FormatLike, Named, OutputKindLike, ProjectionLike, ViewName, flags, member, named
+from ._names import Named, flags, member, named
 from ._structs import _Struct, new
 
 __all__ = [

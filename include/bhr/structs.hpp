@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+/* bhr/structs.hpp -- the structs that programs fill in, with the defaults of bhr.h. Include bhr.hpp. Made by
+ * tests/header/bindings.rs from include/bhr.json; do not edit. */
+#ifndef BHR_STRUCTS_HPP
+#define BHR_STRUCTS_HPP
+
+#include "constants.hpp"
+#include "layout.hpp"
+
+#include <array>
+
+namespace bhr {
+
+/// Components along x, y and z.
+using Vector = std::array<double, 3>;
+
+/// BhrCamera: The camera: an observer with a lens. Its fields; Camera has the rest.
+struct CameraFields {
+    /// Sizeof(BhrCamera).
+    std::uint32_t struct_size;
+    /// BHR_PROJECTION_*.
+    Projection projection;
+    /// Default (0, 26, 2.5).
+    Vector position;
+    /// Any non-zero length.
+    Vector forward;
+    /// Any non-zero length, not parallel to forward.
+    Vector up;
+    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE.
+    double fov_y;
+    /// BHR_MOTION_*.
+    Motion motion;
+    /// Reserved: 0.
+    std::uint32_t reserved;
+    /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a direction
+    /// given at position.
+    Vector velocity;
+    /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
+    /// left less than right, down less than up.
+    double tan_left;
+    /// The right border.
+    double tan_right;
+    /// The lower border.
+    double tan_down;
+    /// The upper border.
+    double tan_up;
+    /// Pixels that the whole picture moves to the right and down, each within +-1, for temporal antialiasing.
+    std::array<double, 2> jitter;
+    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0.
+    double eye_distance;
+    /// BHR_EYE_*.
+    Eye eye;
+    /// Reserved: 0.
+    std::uint32_t reserved2;
+};
+
+/// BhrDisk: A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux.
+/// Defaults: bhr_disk_init.
+struct Disk {
+    /// Sizeof(BhrDisk).
+    std::uint32_t struct_size;
+    /// Any of BHR_DISK_RETROGRADE | BHR_DISK_PLUNGES.
+    DiskFlags flags;
+    /// In M, 0 ..
+    double inner_radius;
+    /// In M, greater than inner_radius, to 1e6.
+    double outer_radius;
+    /// Kelvin at the ring that `reference` says, 500 ..
+    double temperature;
+    /// 0 ..
+    double opacity;
+    /// 0 ..
+    double brightness;
+    /// Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default).
+    double turbulence;
+    /// Selects the turbulence: the same seed always gives the same pattern.
+    std::uint64_t seed;
+    /// BHR_DISK_AT_*.
+    DiskReference reference;
+    /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED.
+    EmissionLaw emission_law;
+    /// 0 sharp ..
+    double edge_softness;
+
+    Disk() noexcept { detail::defaults(*this, bhr_disk_init); }
+    BhrDisk c() const noexcept { return detail::as_c<BhrDisk>(*this); }
+};
+
+/// BhrVolume: Matter with depth, which shines and absorbs by the equation of transfer; nothing is scattered. Defaults:
+/// bhr_volume_init.
+struct Volume {
+    /// Sizeof(BhrVolume).
+    std::uint32_t struct_size;
+    /// Any of BHR_VOLUME_RETROGRADE | BHR_VOLUME_POWER_LAW.
+    VolumeFlags flags;
+    /// BHR_VOLUME_DISK (default), _TORUS, _HALO, _JET.
+    VolumeShape shape;
+    /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
+    Flow flow;
+    /// In M, 1e-6 ..
+    double inner_radius;
+    /// In M, greater than inner_radius, to 1e4.
+    double outer_radius;
+    /// In M, 0.1 ..
+    double radius;
+    /// In M, 1e-3 ..
+    double width;
+    /// 0.01 ..
+    double thickness;
+    /// JET: the wall's angle from the axis at `radius`, radians, 0.01 ..
+    double opening;
+    /// DISK, JET: 0 ..
+    double slope;
+    /// Per M at density 1, 0 ..
+    double absorption;
+    /// Kelvin, 500 ..
+    double temperature;
+    /// 0 ..
+    double temperature_slope;
+    /// POWER_LAW: -4 ..
+    double spectral_index;
+    /// POWER_LAW: the colour of its light at every shift, linear Rec.
+    Vector tint;
+    /// A factor on the light, 0 ..
+    double brightness;
+    /// KEPLERIAN: the share of the orbit's angular momentum, 0 ..
+    double sub_keplerian;
+    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall from rest at infinity.
+    double infall;
+    /// ANGULAR_MOMENTUM: 0 ..
+    double angular_momentum;
+    /// OUTFLOW: the velocity far away in units of c, 0 ..
+    double speed;
+    /// 0 ..
+    double turbulence;
+    /// 0.5 ..
+    double clumping;
+    /// 0 ..
+    double heating;
+    /// Selects the structure: the same seed always gives the same one.
+    std::uint64_t seed;
+
+    Volume() noexcept { detail::defaults(*this, bhr_volume_init); }
+    BhrVolume c() const noexcept { return detail::as_c<BhrVolume>(*this); }
+};
+
+/// BhrHotSpot: A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
+/// sizes, d being the distance from its centre in chart coordinates. Defaults: bhr_hot_spot_init.
+struct HotSpot {
+    /// Sizeof(BhrHotSpot).
+    std::uint32_t struct_size;
+    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL.
+    HotSpotFlags flags;
+    /// In M, 1 ..
+    double radius;
+    /// In M, 0.05 ..
+    double size;
+    /// The centre at scene time 0, radians within +-1e6.
+    double azimuth;
+    /// Per M at the centre, 0 ..
+    double absorption;
+    /// Kelvin, 500 ..
+    double temperature;
+    /// Without THERMAL: -4 ..
+    double spectral_index;
+    /// Without THERMAL: the colour of its light at every shift, linear Rec.
+    Vector tint;
+    /// 0 ..
+    double brightness;
+
+    HotSpot() noexcept { detail::defaults(*this, bhr_hot_spot_init); }
+    BhrHotSpot c() const noexcept { return detail::as_c<BhrHotSpot>(*this); }
+};
+
+/// BhrSky: The sky: everything that lies at infinity. Defaults: bhr_sky_init.
+struct Sky {
+    /// Sizeof(BhrSky).
+    std::uint32_t struct_size;
+    /// BHR_SKY_* bits; 0: black.
+    SkyFlags flags;
+    /// A factor on the light of the stars, 0 ..
+    double stars_brightness;
+    /// A factor on the light of the Milky Way and the map, 0 ..
+    double map_brightness;
+    /// Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole) to
+    /// scene axes.
+    std::array<double, 4> orientation;
+    /// Selects the stars of BHR_SKY_PROCEDURAL: any number.
+    std::uint64_t seed;
+
+    Sky() noexcept { detail::defaults(*this, bhr_sky_init); }
+    BhrSky c() const noexcept { return detail::as_c<BhrSky>(*this); }
+};
+
+/// BhrFilm: How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
+/// radiance, and other views show values. Defaults: bhr_film_init.
+struct Film {
+    /// Sizeof(BhrFilm).
+    std::uint32_t struct_size;
+    /// BHR_TONE_MAP_*.
+    ToneMap tone_map;
+    /// Stops, -20 ..
+    double exposure_ev;
+    /// Glare, 0 off ..
+    double bloom;
+    /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
+    /// heights, 0 off (default) ..
+    double beam_fwhm;
+    /// BHR_COLOUR_MAP_*.
+    ColourMap colour_map;
+    /// 0.
+    std::uint32_t reserved;
+
+    Film() noexcept { detail::defaults(*this, bhr_film_init); }
+    BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }
+};
+
+/// BhrPresetOptions: Settings of bhr_set_preset_with. Defaults: bhr_preset_options_init.
+struct PresetOptions {
+    /// Sizeof(BhrPresetOptions).
+    std::uint32_t struct_size;
+    /// BHR_PRESET_MATTER_AUTO (default), _THIN, _DEEP.
+    PresetMatter matter;
+    /// AUTO: the width of the frames that are to be rendered, in pixels, 1 ..
+    std::uint32_t width;
+    /// AUTO: their height, in pixels, 1 ..
+    std::uint32_t height;
+    /// AUTO: the time that such a frame may take, in milliseconds, 0.001 ..
+    double frame_ms;
+    /// AUTO: 1 forgets what was measured for the preset before; 0 (default) keeps it.
+    std::uint32_t measure_anew;
+    /// AUTO: 1 takes DEEP at half resolution where FULL is too slow, and sets BhrQuality.volume_resolution to what DEEP
+    /// fits with; 0 (default) leaves that as it is.
+    std::uint32_t may_halve;
+
+    PresetOptions() noexcept { detail::defaults(*this, bhr_preset_options_init); }
+    BhrPresetOptions c() const noexcept { return detail::as_c<BhrPresetOptions>(*this); }
+};
+
+/// BhrQuality: How exactly to trace. Defaults: bhr_quality_init.
+struct Quality {
+    /// Sizeof(BhrQuality).
+    std::uint32_t struct_size;
+    /// BHR_METHOD_*.
+    Method method;
+    /// Samples of each pixel, 1 (default) ..
+    std::uint32_t samples_per_pixel;
+    /// Steps of an integrated ray, 16 ..
+    std::uint32_t max_steps;
+    /// RK4: the step, 1e-3 ..
+    double step;
+    /// ADAPTIVE: the relative tolerance, 1e-14 ..
+    double tolerance;
+    /// Images of the disk to follow, 0 (the direct one only) ..
+    std::uint32_t max_disk_order;
+    /// Reserved: 0.
+    std::uint32_t reserved;
+    /// Windows: traced size / window size, 0.1 ..
+    double render_scale;
+    /// BHR_VOLUME_RESOLUTION_*.
+    VolumeResolution volume_resolution;
+    /// Reserved: 0.
+    std::uint32_t reserved2;
+
+    Quality() noexcept { detail::defaults(*this, bhr_quality_init); }
+    BhrQuality c() const noexcept { return detail::as_c<BhrQuality>(*this); }
+};
+
+} // namespace bhr
+
+#endif
