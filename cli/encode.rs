@@ -54,49 +54,62 @@ pub struct Encoders {
     written: Receiver<Written>,
     /// Pixels that no frame needs now.
     free: Receiver<Pixels>,
+    frame_bytes: usize,
+    /// The buffers that there are, and may be.
+    buffers: usize,
+    most_buffers: usize,
+}
+
+fn no_memory(message: impl Into<String>) -> Ending {
+    bhr::error::Error::new(bhr::error::ErrorKind::OutOfMemory, message).into()
 }
 
 impl Encoders {
-    /// Threads for frames of so many bytes.
-    pub fn new(threads: usize, frame_bytes: usize) -> Result<Self, Ending> {
+    /// Threads for so many frames of so many bytes; 0 threads: one a core.
+    pub fn new(threads: usize, frames: usize, frame_bytes: usize) -> Result<Self, Ending> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = if threads == 0 { cores } else { threads };
-        let buffers = (MOST_BYTES / frame_bytes.max(1)).clamp(2, threads + 2);
+        let threads = (if threads == 0 { cores } else { threads }).clamp(1, frames.max(1));
+        let most_buffers = (MOST_BYTES / frame_bytes.max(1)).clamp(1, threads + 2).min(frames.max(1));
         let (give_back, free) = channel();
-        for _ in 0..buffers {
-            let mut pixels = Pixels::new();
-            let count = frame_bytes.div_ceil(4);
-            // Frames get as many buffers as there is memory for.
-            if pixels.try_reserve_exact(count).is_err() {
-                break;
-            }
-            pixels.resize(count, 0);
-            let _ = give_back.send(pixels);
-        }
-        let (orders, taken) = sync_channel::<Frame>(buffers);
+        let (orders, taken) = sync_channel::<Frame>(most_buffers);
         let taken = Arc::new(Mutex::new(taken));
         let (tell, written) = channel();
-        let threads = (0..threads.min(buffers))
-            .map(|_| {
-                let (taken, tell, give_back) = (taken.clone(), tell.clone(), give_back.clone());
-                std::thread::Builder::new()
-                    .name("bhr encoder".into())
-                    .spawn(move || work(&taken, &tell, &give_back))
-                    .map_err(|error| {
-                        Ending::from(bhr::error::Error::new(
-                            bhr::error::ErrorKind::OutOfMemory,
-                            format!("a thread cannot be started: {error}"),
-                        ))
-                    })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { threads, orders: Some(orders), written, free })
+        let threads = (0..threads.min(most_buffers)).map(|_| {
+            let (taken, tell, give_back) = (taken.clone(), tell.clone(), give_back.clone());
+            let thread = std::thread::Builder::new().name("bhr encoder".into());
+            let started = thread.spawn(move || work(&taken, &tell, &give_back));
+            started.map_err(|error| no_memory(format!("a thread cannot be started: {error}")))
+        });
+        let threads = threads.collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { threads, orders: Some(orders), written, free, frame_bytes, buffers: 0, most_buffers })
     }
 
     /// Pixels for a frame, when there are some. Errors: there is no memory for one frame.
-    pub fn pixels(&self) -> Result<Pixels, Ending> {
-        let none = || bhr::error::Error::new(bhr::error::ErrorKind::OutOfMemory, "no memory for the pixels of a frame");
-        self.free.recv().map_err(|_| none().into())
+    pub fn pixels(&mut self) -> Result<Pixels, Ending> {
+        if let Ok(pixels) = self.free.try_recv() {
+            return Ok(pixels);
+        }
+        if self.buffers < self.most_buffers {
+            let mut pixels = Pixels::new();
+            let count = self.frame_bytes.div_ceil(4);
+            match (pixels.try_reserve_exact(count), self.buffers) {
+                (Ok(()), _) => {
+                    pixels.resize(count, 0);
+                    self.buffers += 1;
+                    return Ok(pixels);
+                }
+                (Err(_), 0) => {
+                    return Err(no_memory(format!(
+                        "there are no {} bytes for the pixels of a frame",
+                        self.frame_bytes
+                    )));
+                }
+                // What there is has to do.
+                (Err(_), there) => self.most_buffers = there,
+            }
+        }
+        // The threads give pixels back even where they could not write them, and end with the orders only.
+        self.free.recv().map_err(|_| bhr::error::Error::internal("the threads that write files have ended").into())
     }
 
     pub fn order(&self, frame: Frame) -> Result<(), Ending> {
@@ -112,11 +125,9 @@ impl Encoders {
     /// Waits for all frames that were ordered; those that have been written since the last question.
     pub fn finish(mut self) -> Vec<Written> {
         self.orders = None;
-        for thread in self.threads.drain(..) {
-            // A thread's panic has been told, and its frame is not there.
-            let _ = thread.join();
-        }
-        self.written.try_iter().collect()
+        let panicked = self.threads.drain(..).filter_map(|thread| thread.join().err()).count();
+        let lost = (panicked > 0).then(|| bhr::error::Error::internal("writing a file panicked"));
+        self.written.try_iter().chain(lost.map(|error| Err(error.into()))).collect()
     }
 }
 
@@ -136,6 +147,7 @@ fn work(orders: &Mutex<Receiver<Frame>>, tell: &Sender<Written>, give_back: &Sen
 }
 
 fn write(frame: &Frame) -> Result<(), Ending> {
+    frame.made.announce(&frame.manifest)?;
     let image = ImageRef::new(frame.layout, bytemuck::cast_slice(&frame.pixels))?;
     let file = &frame.made.file;
     if frame.layout.format.is_developed() {

@@ -17,7 +17,7 @@ impl Ending {
     /// EX_USAGE, EX_DATAERR, EX_SOFTWARE, EX_IOERR, EX_TEMPFAIL.
     pub const USAGE: u8 = 64;
     const DATA: u8 = 65;
-    const SOFTWARE: u8 = 70;
+    pub const SOFTWARE: u8 = 70;
     const IO: u8 = 74;
     const TRY_AGAIN: u8 = 75;
 

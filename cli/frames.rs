@@ -7,7 +7,7 @@ use bhr::scene::Region;
 use std::path::{Path, PathBuf};
 
 /// More frames than this in one list are a slip.
-const MOST_FRAMES: usize = 100_000_000;
+const MOST_FRAMES: usize = 1_000_000;
 
 /// The frames of a list such as `5,7,20-30x2`, in its order, none twice.
 pub fn list(text: &str) -> Result<Vec<u32>, Ending> {

@@ -3,12 +3,13 @@
 //! tiles are parts of one frame.
 
 use crate::ending::Ending;
-use crate::manifest::Manifest;
+use crate::manifest::{Fingerprint, Manifest};
 use crate::progress::say;
 use bhr::image::{Alpha, ImageRef, Layer, Layout, Loaded, PixelFormat, load, save, save_layers};
 use bhr::scene::{Output, Region};
 use clap::ArgMatches;
 use half::f16;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The picture that is put together, in the channels of its file.
@@ -24,16 +25,34 @@ struct Joined {
     there: Vec<bool>,
 }
 
-/// The manifests of a tile: those in its folder that name it.
-fn region_of(tile: &Path) -> Result<Region, Ending> {
-    let folder = tile.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = std::fs::read_dir(folder).map_err(|error| Ending::io(folder, error))?;
-    let manifests = entries.flatten().map(|entry| entry.path());
-    let manifests = manifests.filter(|path| path.to_string_lossy().ends_with(".manifest.jsonl"));
-    manifests
-        .into_iter()
-        .find_map(|path| Manifest::read(&path).region_of(tile))
-        .ok_or_else(|| Ending::data(format!("{}: no manifest beside it says which tile it is", tile.display())))
+/// The manifests of folders, each read once.
+#[derive(Default)]
+struct Manifests(BTreeMap<PathBuf, Vec<Manifest>>);
+
+impl Manifests {
+    /// The frame and the place of a tile, as the manifest in its folder says that names it.
+    fn find(&mut self, tile: &Path) -> Result<(Fingerprint, Region), Ending> {
+        let folder = tile.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !self.0.contains_key(folder) {
+            let entries = std::fs::read_dir(folder).map_err(|error| Ending::io(folder, error))?;
+            let paths = entries.flatten().map(|entry| entry.path());
+            let manifests = paths.filter(|path| path.to_string_lossy().ends_with("manifest.jsonl"));
+            let manifests = manifests.map(|path| Manifest::read(&path)).collect();
+            self.0.insert(folder.to_owned(), manifests);
+        }
+        let all = self.0.get(folder).map(Vec::as_slice).unwrap_or_default();
+        let found = all.iter().filter_map(|manifest| manifest.frame_of(tile)).collect::<Vec<_>>();
+        let wrong = |what: &str| Err(Ending::data(format!("{}: {what}", tile.display())));
+        match &found[..] {
+            [Some(found)] => match found.tile {
+                Some(tile) => Ok((found.clone(), tile.region)),
+                None => wrong("it is a whole frame, as its manifest says"),
+            },
+            [None] => wrong("it was being written when its program was killed; render it again"),
+            [] => wrong("no manifest beside it says which tile it is"),
+            _ => wrong("two manifests beside it speak of it"),
+        }
+    }
 }
 
 impl Joined {
@@ -80,6 +99,9 @@ impl Joined {
                     let floats: &[f32] = bytemuck::cast_slice(bytes);
                     for (to, from) in all[to].iter_mut().zip(&floats[from]) {
                         *to = f16::from_f32(*from);
+                        if to.is_infinite() && from.is_finite() {
+                            return Err(Ending::data(format!("{}: {from} does not fit into a half", path.display())));
+                        }
                     }
                 }
                 _ => {
@@ -118,8 +140,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     let tiles = given.get_many::<PathBuf>("tiles").unwrap_or_default().collect::<Vec<_>>();
     let exr = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
     let mut joined: Option<Joined> = None;
+    let (mut manifests, mut first) = (Manifests::default(), None);
     for path in &tiles {
-        let region = region_of(path)?;
+        let (of, region) = manifests.find(path)?;
+        let (frame, scene) = first.get_or_insert_with(|| (of.frame, of.scene.clone()));
+        if (of.frame, &of.scene) != (*frame, &*scene) {
+            return Err(Ending::data(format!("{}: it is a tile of another frame", path.display())));
+        }
         let tile = load(path)?;
         let whole = match &mut joined {
             Some(whole) => whole,

@@ -68,7 +68,10 @@ fn command() -> Command {
                 .num_args(0)
                 .action(ArgAction::SetTrue),
         )
-        .arg(option("encoders", "N", "Threads that write files; 0: one a core").value_parser(value_parser!(usize)))
+        .arg(
+            option("encoders", "N", "Threads that write files, to 256; 0: one a core")
+                .value_parser(value_parser!(u32).range(0..=MOST_ENCODERS)),
+        )
         .arg(option("progress", "KIND", "auto, bar, plain, json, openjd or none").default_value("auto"))
         .args(device());
     Command::new("bhr")
@@ -124,7 +127,15 @@ fn run(matches: &ArgMatches) -> Result<(), Ending> {
     }
 }
 
+/// The most threads that write files.
+const MOST_ENCODERS: i64 = 256;
+
 fn main() -> ExitCode {
+    // A panic has told of itself; its status is that of a bug.
+    std::panic::catch_unwind(begin).unwrap_or(ExitCode::from(Ending::SOFTWARE))
+}
+
+fn begin() -> ExitCode {
     let matches = match command().try_get_matches() {
         Ok(matches) => matches,
         Err(error) => {

@@ -1,28 +1,40 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The file beside the frames that says how each was made: one JSON object a line, appended in one write, so that
-//! several programs may write to one file; of several lines for a file the last one counts. Knows no scene.
+//! The file beside the frames that says how each was made: one JSON object a line, appended under a lock, so that
+//! several programs may write to one file; of several lines for a file the last one counts. A line without a hash is
+//! written before a file is: who was killed in between leaves a file that does not count. Knows no scene.
 
 use crate::ending::Ending;
 use bhr::scene::Region;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
-use std::fs::OpenOptions;
-use std::io::Write;
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// All that decides the bytes of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fingerprint {
+    pub frame: u32,
+    /// [`hash`] of the scene at the frame's moment, and of the settings that decide pixels.
+    pub scene: String,
+    pub tile: Option<Tile>,
+}
+
+/// A part of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tile {
+    pub region: Region,
+    pub size: [u32; 2],
+}
 
 /// How a frame was made.
 #[derive(Clone)]
 pub struct Made {
-    pub frame: u32,
     pub file: PathBuf,
-    /// [`hash`] of all that its bytes depend on.
-    pub scene: String,
+    pub of: Fingerprint,
     pub adapter: String,
     pub backend: String,
-    /// The part of the full frame that it is.
-    pub region: Option<Region>,
-    pub size: [u32; 2],
     pub seconds: f64,
 }
 
@@ -36,63 +48,101 @@ fn name_of(file: &Path) -> String {
 }
 
 impl Made {
-    /// The frame's line: its file is there, whole.
-    fn line(&self) -> std::io::Result<String> {
-        let tile = self.region.map(|region| {
-            let [width, height] = self.size;
+    /// Says that the file is about to be written.
+    pub fn announce(&self, manifest: &Path) -> Result<(), Ending> {
+        append(manifest, &json!({"file": name_of(&self.file), "frame": self.of.frame}))
+    }
+
+    /// Says that the file is there.
+    pub fn note(&self, manifest: &Path) -> Result<(), Ending> {
+        let bytes = std::fs::read(&self.file).map_err(|error| Ending::io(&self.file, error))?;
+        let tile = self.of.tile.map(|Tile { region, size: [width, height] }| {
             json!({"x": region.x, "y": region.y, "width": width, "height": height,
                    "full_width": region.full_width, "full_height": region.full_height})
         });
         let line = json!({
-            "frame": self.frame,
+            "frame": self.of.frame,
             "file": name_of(&self.file),
-            "sha256": hash(&std::fs::read(&self.file)?),
-            "scene": self.scene,
+            "sha256": hash(&bytes),
+            "scene": self.of.scene,
             "bhr": env!("CARGO_PKG_VERSION"),
             "backend": self.backend,
             "adapter": self.adapter,
             "tile": tile,
             "seconds": self.seconds,
         });
-        Ok(format!("{line}\n"))
+        append(manifest, &line)
     }
+}
 
-    /// Appends the frame's line to a manifest.
-    pub fn note(&self, manifest: &Path) -> Result<(), Ending> {
-        let append = || {
-            let line = self.line()?;
-            OpenOptions::new().create(true).append(true).open(manifest)?.write_all(line.as_bytes())
-        };
-        append().map_err(|error| Ending::io(manifest, error))
-    }
+/// Appends a line, behind the end of one that another program was killed in.
+fn append(manifest: &Path, line: &Value) -> Result<(), Ending> {
+    let write = || {
+        let mut file = OpenOptions::new().create(true).read(true).append(true).open(manifest)?;
+        // Where the file system has no locks, one write at the end has to be enough.
+        let _ = file.lock();
+        let mut last = [b'\n'];
+        if file.seek(SeekFrom::End(0))? > 0 {
+            file.seek(SeekFrom::End(-1))?;
+            file.read_exact(&mut last)?;
+        }
+        let begin = if last == *b"\n" { "" } else { "\n" };
+        file.write_all(format!("{begin}{line}\n").as_bytes())
+    };
+    write().map_err(|error| Ending::io(manifest, error))
 }
 
 /// The last line of each file in a manifest. Lines that are no object, such as one that a program was killed in, count
 /// as none.
-pub struct Manifest(HashMap<String, Value>);
+pub struct Manifest {
+    path: PathBuf,
+    lines: HashMap<String, Value>,
+    /// Bytes that have been read.
+    end: u64,
+}
 
 impl Manifest {
     pub fn read(path: &Path) -> Self {
-        let text = std::fs::read(path).unwrap_or_default();
-        let text = String::from_utf8_lossy(&text);
-        let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-        Self(lines.filter_map(|line| Some((line["file"].as_str()?.to_owned(), line))).collect())
+        let mut manifest = Self { path: path.to_owned(), lines: HashMap::new(), end: 0 };
+        manifest.refresh();
+        manifest
     }
 
-    /// The hash of the scene that a file shows; `None` where nobody has noted it.
-    pub fn scene_of(&self, file: &Path) -> Option<&str> {
-        self.0.get(&name_of(file))?["scene"].as_str()
+    /// Reads what has been appended since.
+    pub fn refresh(&mut self) {
+        let mut bytes = Vec::new();
+        let read = |bytes: &mut Vec<u8>| {
+            let mut file = File::open(&self.path)?;
+            file.seek(SeekFrom::Start(self.end))?;
+            file.read_to_end(bytes)
+        };
+        // One that is not there says nothing.
+        if read(&mut bytes).is_err() {
+            return;
+        }
+        // A line that is being written is read when it is whole.
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        self.end += whole as u64;
+        for line in String::from_utf8_lossy(bytes.get(..whole).unwrap_or_default()).lines() {
+            let Ok(line) = serde_json::from_str::<Value>(line) else { continue };
+            if let Some(file) = line["file"].as_str() {
+                self.lines.insert(file.to_owned(), line);
+            }
+        }
     }
 
-    /// Where a tile belongs: the part of the frame that it is.
-    pub fn region_of(&self, file: &Path) -> Option<Region> {
-        let tile = &self.0.get(&name_of(file))?["tile"];
-        let side = |name: &str| tile[name].as_u64().and_then(|side| u32::try_from(side).ok());
-        Some(Region {
-            full_width: side("full_width")?,
-            full_height: side("full_height")?,
-            x: side("x")?,
-            y: side("y")?,
-        })
+    /// The frame that a file shows. The outer `None`: nobody has noted it; the inner one: it was being written.
+    pub fn frame_of(&self, file: &Path) -> Option<Option<Fingerprint>> {
+        let line = self.lines.get(&name_of(file))?;
+        let number = |value: &Value| value.as_u64().and_then(|number| u32::try_from(number).ok());
+        let side = |name: &str| number(&line["tile"][name]);
+        let tile = || {
+            let (full_width, full_height) = (side("full_width")?, side("full_height")?);
+            let region = Region { full_width, full_height, x: side("x")?, y: side("y")? };
+            Some(Tile { region, size: [side("width")?, side("height")?] })
+        };
+        let scene = line["scene"].as_str().map(str::to_owned);
+        let whole = scene.and_then(|scene| Some(Fingerprint { frame: number(&line["frame"])?, scene, tile: tile() }));
+        Some(whole)
     }
 }

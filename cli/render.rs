@@ -6,7 +6,7 @@
 use crate::encode::{Claim, Encoders, Frame};
 use crate::ending::Ending;
 use crate::frames::{self, Names};
-use crate::manifest::{Made, Manifest, hash};
+use crate::manifest::{Fingerprint, Made, Manifest, Tile, hash};
 use crate::open::{self, Opened, recovering};
 use crate::progress::{Progress, say};
 use crate::signals::Signals;
@@ -64,8 +64,10 @@ impl Order {
         };
         let samples = given.get_one::<u32>("samples").copied();
         let transparent = given.get_flag("transparent");
-        let scene = opened.file.text(None)?;
-        let all = format!("{scene}\n{size:?} {tile:?} {samples:?} {format:?} {transparent}");
+        let map = opened.file.map().map(|map| std::fs::read(map).map_err(|error| Ending::io(map, error)));
+        let map = map.transpose()?.map(|bytes| hash(&bytes));
+        let scene = opened.file.text_of_pixels()?;
+        let all = format!("{scene}\n{map:?} {size:?} {samples:?} {format:?} {transparent}");
         let scene_hash = hash(all.as_bytes());
         let rate = render.frames_per_second;
         Ok(Self { opened, rate, size, tile, samples, format, transparent, scene_hash })
@@ -83,6 +85,19 @@ impl Order {
             Some([x, y, width, height]) => (Some(Region { full_width, full_height, x, y }), [width, height]),
             None => (region, self.size),
         })
+    }
+
+    /// All that decides the bytes of a frame's file.
+    fn fingerprint(&self, frame: u32) -> Fingerprint {
+        let seconds = f64::from(frame) / self.rate;
+        let moment = if self.opened.file.moves() { seconds.to_bits() } else { 0 };
+        let scene = hash(format!("{} {moment:x}", self.scene_hash).as_bytes());
+        let [full_width, full_height] = self.size;
+        let tile = self.tile.map(|[x, y, width, height]| Tile {
+            region: Region { full_width, full_height, x, y },
+            size: [width, height],
+        });
+        Fingerprint { frame, scene, tile }
     }
 
     fn layout(&self) -> Layout {
@@ -109,9 +124,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     let signals = Signals::listen();
     let mut renderer = open::renderer(given)?;
     if given.get_flag("dry-run") {
-        return dry_run(&order, &list, &mut renderer);
+        return dry_run(&order, &list, &mut renderer, &signals);
     }
-    let encoders = given.get_one::<usize>("encoders").copied().unwrap_or(0);
+    let encoders = given.get_one::<u32>("encoders").copied().unwrap_or(0) as usize;
     let run = Run { order: &order, names: &names, again: given.get_flag("again"), signals: &signals };
     let result = run.frames(list, encoders, &mut renderer, &mut progress);
     progress.end();
@@ -135,12 +150,12 @@ impl Run<'_> {
     ) -> Result<(), Ending> {
         let layout = self.order.layout();
         let (bytes, _) = layout.check()?;
-        let encoders = Encoders::new(encoders, bytes)?;
-        let mut ended = self.render_all(list, layout, &encoders, renderer, progress);
+        let mut encoders = Encoders::new(encoders, list.len(), bytes)?;
+        let mut ended = self.render_all(list, layout, &mut encoders, renderer, progress);
         // Frames that are rendered are written, whatever ended the rest; the first mistake is told.
         for written in encoders.finish() {
             match written {
-                Ok(made) => progress.frame(made.frame, &made.file, Some(made.seconds)),
+                Ok(made) => progress.frame(made.of.frame, &made.file, Some(made.seconds)),
                 Err(ending) => ended = ended.and(Err(ending)),
             }
         }
@@ -151,23 +166,24 @@ impl Run<'_> {
         &self,
         list: Vec<u32>,
         layout: Layout,
-        encoders: &Encoders,
+        encoders: &mut Encoders,
         renderer: &mut Renderer,
         progress: &mut Progress,
     ) -> Result<(), Ending> {
         let mut lost = 0;
+        let mut manifest = Manifest::read(&self.names.manifest());
         let mut left = list;
         while !left.is_empty() {
-            let manifest = Manifest::read(&self.names.manifest());
+            manifest.refresh();
             let mut others = Vec::new();
             for frame in left {
                 self.signals.check()?;
                 for written in encoders.written() {
                     let made = written?;
-                    progress.frame(made.frame, &made.file, Some(made.seconds));
+                    progress.frame(made.of.frame, &made.file, Some(made.seconds));
                 }
                 let file = self.names.of(frame);
-                if self.is_there(&file, &manifest) {
+                if self.is_there(frame, &file, &manifest) {
                     progress.frame(frame, &file, None);
                     continue;
                 }
@@ -176,7 +192,8 @@ impl Run<'_> {
                     continue;
                 };
                 // Another program may have finished the frame between the two questions.
-                if file.exists() && self.is_there(&file, &Manifest::read(&self.names.manifest())) {
+                manifest.refresh();
+                if self.is_there(frame, &file, &manifest) {
                     progress.frame(frame, &file, None);
                     continue;
                 }
@@ -192,9 +209,15 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Whether a frame's file is there, and of this scene as far as that is known.
-    fn is_there(&self, file: &Path, manifest: &Manifest) -> bool {
-        !self.again && file.exists() && manifest.scene_of(file).is_none_or(|scene| scene == self.order.scene_hash)
+    /// Whether a frame's file is there, whole, and of this scene as far as that is known. A tile that nobody has noted
+    /// could not be joined.
+    fn is_there(&self, frame: u32, file: &Path, manifest: &Manifest) -> bool {
+        let is_file = || std::fs::metadata(file).is_ok_and(|found| found.is_file() && found.len() > 0);
+        let is_this = || match manifest.frame_of(file) {
+            None => self.order.tile.is_none(),
+            Some(noted) => noted.is_some_and(|noted| noted == self.order.fingerprint(frame)),
+        };
+        !self.again && is_file() && is_this()
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -204,7 +227,7 @@ impl Run<'_> {
         file: PathBuf,
         layout: Layout,
         claim: Claim,
-        encoders: &Encoders,
+        encoders: &mut Encoders,
         renderer: &mut Renderer,
         lost: &mut u32,
     ) -> Result<Frame, Ending> {
@@ -226,13 +249,10 @@ impl Run<'_> {
             attributes: if layout.format.is_developed() { Vec::new() } else { parameters(&made) },
             manifest: self.names.manifest(),
             made: Made {
-                frame,
                 file,
-                scene: self.order.scene_hash.clone(),
+                of: self.order.fingerprint(frame),
                 adapter: adapter.name.clone(),
                 backend: adapter.backend.to_string(),
-                region,
-                size,
                 seconds: begin.elapsed().as_secs_f64(),
             },
             claim,
@@ -247,7 +267,9 @@ fn claim(file: &Path) -> Result<Option<Claim>, Ending> {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(".lock");
     let path = file.with_file_name(name);
-    let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
+    // Another user's, who was killed, may be read at least, which is enough for a lock.
+    let open = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
+    let lock = open.or_else(|error| std::fs::File::open(&path).map_err(|_| error));
     let lock = lock.map_err(|error| Ending::io(&path, error))?;
     match lock.try_lock() {
         Err(std::fs::TryLockError::WouldBlock) => Ok(None),
@@ -259,7 +281,7 @@ fn claim(file: &Path) -> Result<Option<Claim>, Ending> {
 const TRIED_PIXELS: f64 = 320.0 * 180.0;
 
 /// Renders the first, the middle and the last frame small, and says what all of them take.
-fn dry_run(order: &Order, list: &[u32], renderer: &mut Renderer) -> Result<(), Ending> {
+fn dry_run(order: &Order, list: &[u32], renderer: &mut Renderer, signals: &Signals) -> Result<(), Ending> {
     let layout = order.layout();
     let pixels = f64::from(layout.width) * f64::from(layout.height);
     let shrink = (TRIED_PIXELS / pixels).sqrt().min(1.0);
@@ -277,7 +299,9 @@ fn dry_run(order: &Order, list: &[u32], renderer: &mut Renderer) -> Result<(), E
         for _ in 0..2 {
             let begin = Instant::now();
             let mut image = ImageMut::new(small, bytemuck::cast_slice_mut(&mut pixels))?;
-            renderer.render(&mut image, order.transparent, None, &mut |_| true)?;
+            let rendered = renderer.render(&mut image, order.transparent, None, &mut |_| !signals.has_come());
+            signals.check()?;
+            rendered?;
             took = begin.elapsed().as_secs_f64();
         }
         seconds.push(took);

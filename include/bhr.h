@@ -1153,24 +1153,25 @@ BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *reg
 /** Sets the whole scene from text: everything that setters take, under the names of this header, in TOML, as
  * docs/scenes.md describes it. What it does not name has the value of a new context, or of the preset that it names;
  * values may change with time, and the scene is that of 0 seconds. Frames show all of it or nothing. The text has
- * size bytes of UTF-8, at most 8 MiB, without NUL. Paths are relative to the current folder. Occluders and callbacks
+ * size bytes of UTF-8, at most 4 MiB. Paths are relative to the current folder. Occluders and callbacks
  * are left alone.
  * Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
- * unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE for a
- * camera that cannot move as it is to; IO and those of bhr_set_sky_map for the sky's map. @since 0.2.0 */
+ * unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE and
+ * UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_load(BhrContext *context, const char *text, size_t size);
 
 /** Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder.
- * Errors: those of bhr_scene_load; IO for a file that is not there, not readable or larger than 8 MiB. @since 0.2.0 */
+ * Errors: those of bhr_scene_load; IO for a file that is not there, not readable, not UTF-8 or larger than 4 MiB.
+ * @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_load_file(BhrContext *context, const char *path);
 
 /** Sets the scene to a time, in seconds: what changes with time in the text that was loaded last gets its value of that
- * time, whatever setters have made of it since, and nothing else changes. Before the first key of a value it is the
- * first one's, after the last key the last one's. This is the time of a film; the scene's own time, which
- * bhr_set_time takes, is one of the values that may change with it.
+ * time, whatever setters have made of it since, and nothing else changes; a camera whose place moves is set as a
+ * whole. Before the first key of a value it is the first one's, after the last key the last one's. This is the time of
+ * a film; the scene's own time, which bhr_set_time takes, is one of the values that may change with it.
  * Errors, after which the scene is as it was: INVALID_STATE where no scene was loaded, where a camera cannot move as
- * it is to, and where a volume or a spot that changes is no more there; INVALID_ARGUMENT for values that leave their
- * range between their keys. @since 0.2.0 */
+ * it is to, and where a disk, a volume or a spot that changes is no longer there; INVALID_ARGUMENT for values that
+ * leave their range between their keys. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_at(BhrContext *context, double seconds);
 
 /** Reads the pictures that the text that was loaded last asks for: their size in pixels, their number, 1 for one that
@@ -1180,9 +1181,9 @@ BHR_NODISCARD BhrStatus bhr_scene_at(BhrContext *context, double seconds);
 BHR_NODISCARD BhrStatus bhr_scene_pictures(const BhrContext *context, uint32_t *out_width, uint32_t *out_height,
                                            uint32_t *out_count, double *out_rate);
 
-/** Writes the scene as it is set as text that bhr_scene_load reads back to the same scene, bit by bit: *out_size
- * becomes the length of the text in bytes without the NUL that ends it, and buffer, unless it is NULL, gets both.
- * What changes with time in the text that was loaded last is written as it was read. Occluders are not part of it;
+/** Writes the scene as it is set as text that bhr_scene_load reads back bit by bit: *out_size becomes the length of the
+ * text in bytes without the NUL that ends it, and buffer, unless it is NULL, gets both. What changes with time in the
+ * text that was loaded last is written as it was read, so that the scene that is read is that of 0 seconds. Occluders are not part of it;
  * paths are absolute.
  * Errors: INVALID_ARGUMENT for a buffer of fewer than *out_size + 1 bytes, which then stays as it was; UNSUPPORTED
  * for a map of the sky that has no path: one of bhr_set_sky_map or bhr_set_sky_target. @since 0.2.0 */

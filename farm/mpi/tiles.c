@@ -74,7 +74,9 @@ int main(int argc, char **argv) {
     MPI_Win_allocate(bytes, 4, MPI_INFO_NULL, MPI_COMM_WORLD, &frame, &frames);
     MPI_Win_allocate(rank == 0 ? 8 : 0, 8, MPI_INFO_NULL, MPI_COMM_WORLD, &next, &queue);
     if (rank == 0) {
+        MPI_Win_lock(MPI_LOCK_EXCLUSIVE, 0, 0, queue);
         *next = 0;
+        MPI_Win_unlock(0, queue);
     }
     if (pixels == NULL) {
         MPI_Abort(MPI_COMM_WORLD, 75);
@@ -98,12 +100,14 @@ int main(int argc, char **argv) {
     printf("process %d has made %d of %d tiles\n", rank, made, (int)tiles);
     MPI_Barrier(MPI_COMM_WORLD);
     if (rank == 0) {
+        MPI_Win_lock(MPI_LOCK_SHARED, 0, 0, frames);
         BhrImage image;
         BHR_INIT(image);
         image.width = region.full_width, image.height = region.full_height;
         image.pixels = frame;
         image.byte_size = (uint64_t)bytes;
         need(bhr_image_save(&image, argv[4]));
+        MPI_Win_unlock(0, frames);
     }
     MPI_Win_free(&frames);
     MPI_Win_free(&queue);

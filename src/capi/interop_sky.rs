@@ -6,9 +6,9 @@ use super::camera::{BHR_PROJECTION_CUBE, BHR_PROJECTION_EQUIRECT, BhrProjection}
 use super::context::BhrContext;
 use super::interop_target::BhrTarget;
 use super::pointer::unknown;
+use super::state::State;
 use super::status::BhrStatus;
 use crate::error::Result;
-use crate::renderer::Renderer;
 
 /// bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported
 /// or wrapped, as wide as high at least, of 16384 x 8192 texels at most, laid out as bhr_set_sky_map has it, that
@@ -21,7 +21,7 @@ use crate::renderer::Renderer;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_target(context: *mut BhrContext, target: *mut BhrTarget) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
-    unsafe { on_context("bhr_set_sky_target", context, |state| set(&mut state.renderer, target, false)) }
+    unsafe { on_context("bhr_set_sky_target", context, |state| set(state, target, false)) }
 }
 
 /// bhr_set_sky_target of a picture in another layout: EQUIRECT is bhr_set_sky_target, CUBE six faces side by side, 6
@@ -43,20 +43,19 @@ pub unsafe extern "C" fn bhr_set_sky_target_as(
                 BHR_PROJECTION_CUBE => true,
                 _ => return unknown(layout, "layout", "BHR_PROJECTION_EQUIRECT (2) or BHR_PROJECTION_CUBE (3)"),
             };
-            set(&mut state.renderer, target, cube)
+            set(state, target, cube)
         })
     }
 }
 
 /// # Safety
 /// `target` is NULL or alive.
-unsafe fn set(renderer: &mut Renderer, target: *const BhrTarget, cube: bool) -> Result<()> {
+unsafe fn set(state: &mut State, target: *const BhrTarget, cube: bool) -> Result<()> {
     // SAFETY: this function's contract.
     match unsafe { target.as_ref() } {
-        Some(target) => renderer.set_sky_target(&target.target, cube),
-        None => {
-            (renderer.scene.sky_map, renderer.scene.sky_picture) = (None, None);
-            Ok(())
-        }
+        Some(target) => state.renderer.set_sky_target(&target.target, cube)?,
+        None => (state.renderer.scene.sky_map, state.renderer.scene.sky_picture) = (None, None),
     }
+    state.sky_map_file = None;
+    Ok(())
 }

@@ -136,7 +136,7 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
                 true => None,
                 false => Some(Arc::new(SkyMap::new(&image::read(equirect, "equirect")?.pixels.as_image_ref())?)),
             };
-            state.renderer.scene.sky_picture = None;
+            (state.renderer.scene.sky_picture, state.sky_map_file) = (None, None);
             Ok(())
         })
     }
@@ -163,8 +163,5 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
 pub(super) fn show_map(state: &mut State, map: Option<MapFile>) {
     state.renderer.scene.sky_map = map.as_ref().map(|map| map.map().clone());
     state.renderer.scene.sky_picture = None;
-    // The one before is kept where there is none now: it may come again.
-    if map.is_some() {
-        state.sky_map_file = map;
-    }
+    state.sky_map_file = map;
 }

@@ -39,6 +39,6 @@ pub(super) struct State {
     pub progress: Option<Callback>,
     /// The scene that was loaded last.
     pub loaded: Option<Box<dyn Loaded>>,
-    /// The file that the sky's map is from, or that of a map before it.
+    /// The file that the sky's map is from, if it is from one.
     pub sky_map_file: Option<MapFile>,
 }

@@ -317,7 +317,7 @@ class Context(SceneText, Tracing):
     def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
         """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes
         it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left. A file's path is
-        part of what `save_scene` writes."""
+        part of what `save` writes."""
         if isinstance(picture, (str, os.PathLike)):
             self._set(lib.bhr_set_sky_map_file, _path(picture))
             self._targets.pop("sky", None)

@@ -39,15 +39,17 @@ class SceneText:
     def load(self, path: str | os.PathLike[str]) -> None:
         """Sets the whole scene from a file, as `save` writes one or as docs/scenes.md describes it. After an error,
         which has line and column, the scene is as it was."""
-        self._call(lib.bhr_scene_load_file, _path(path))
-        self._targets.pop("sky", None)
+        given = _path(path)
+        with self._gate as context:
+            check(lib.bhr_scene_load_file(context, given))
+            self._targets.pop("sky", None)
 
     def load_text(self, text: str) -> None:
         """Sets the whole scene from text, as `load` does from a file. Its paths are relative to the current folder."""
         given = text.encode()
         with self._gate as context:
             check(lib.bhr_scene_load(context, given, len(given)))
-        self._targets.pop("sky", None)
+            self._targets.pop("sky", None)
 
     def at(self, seconds: float) -> None:
         """Sets what moves in the scene that was loaded last to a time, in seconds of the film."""

@@ -19,13 +19,13 @@ pub use attributes::parameters;
 use std::path::{Path, PathBuf};
 use tracks::Track;
 pub use values::Render;
-use values::{Misfit, Values};
+use values::{Misfit, Section, Values};
 
 /// The format that is written, and the newest that is read.
 pub const FORMAT: u64 = 1;
 
 /// The largest text that is read.
-pub const MOST_BYTES: usize = 8 << 20;
+pub const MOST_BYTES: usize = 4 << 20;
 
 /// A scene as text has it: values, and what moves.
 #[derive(Clone)]
@@ -77,13 +77,7 @@ impl SceneFile {
     pub fn updated(&self, scene: &Scene, region: Option<Region>, map: Option<&MapFile>) -> Result<Self> {
         let mut now = Self::of(scene, region, map)?;
         now.values.render = self.values.render;
-        if self.moves_camera() {
-            now.values.shots.clone_from(&self.values.shots);
-            // Time that passes on a world line is in the scene's time, but not in the text's.
-            if self.values.shots.iter().any(|shot| shot.path.is_some()) {
-                now.values.moment.time = self.values.moment.time;
-            }
-        }
+        self.put_shots(&mut now.values);
         let is_there = |track: &&Track| now.values.bytes(track.section).is_some();
         now.tracks = self.tracks.iter().filter(is_there).cloned().collect();
         Ok(now)
@@ -93,6 +87,14 @@ impl SceneFile {
     /// that is not UTF-8.
     pub fn text(&self, folder: Option<&Path>) -> Result<String> {
         write::write(self, folder)
+    }
+
+    /// The text without all that decides no pixel's value but by its content, or by the moment: the path of the map, and
+    /// the pictures that are asked for. For fingerprints.
+    pub fn text_of_pixels(&self) -> Result<String> {
+        let mut bare = self.clone();
+        (bare.map, bare.values.render) = (None, None);
+        bare.text(None)
     }
 
     /// The pictures that the text asks for, if it does.
@@ -107,14 +109,35 @@ impl SceneFile {
 
     /// Whether anything is another at another time.
     pub fn moves(&self) -> bool {
-        self.moves_camera() || !self.tracks.is_empty()
+        self.values.shots.len() > 1 || !self.tracks.is_empty()
     }
 
-    fn moves_camera(&self) -> bool {
-        let shots = &self.values.shots;
-        shots.len() > 1
-            || shots.iter().any(values::Shot::is_derived)
-            || self.tracks.iter().any(|track| track.section.shot().is_some())
+    /// Whether the camera is another one at another time, or its place is: then it is the text's, whatever a host has
+    /// set. A camera of which other fields move, as its field of view, is the scene's with these fields.
+    fn places_camera(&self) -> bool {
+        let derived = self.values.shots.iter().any(values::Shot::is_derived);
+        let walks = self.values.shots.iter().any(|shot| shot.path.is_some());
+        self.values.shots.len() > 1
+            || self.tracks.iter().any(|track| match track.section {
+                Section::Orbit(_) | Section::Path(_) | Section::Aim(_) => true,
+                Section::Camera(_) => {
+                    derived && ["position", "forward", "up", "motion", "velocity"].contains(&track.field.name)
+                }
+                // A world line adds its time to the scene's.
+                Section::Moment => walks && track.field.name == "time",
+                _ => false,
+            })
+    }
+
+    /// Puts the text's cameras into a scene's values, if it places them. Time that passes on a world line is in the
+    /// scene's time, but not in the text's.
+    fn put_shots(&self, values: &mut Values) {
+        if self.places_camera() {
+            values.shots.clone_from(&self.values.shots);
+            if self.values.shots.iter().any(|shot| shot.path.is_some()) {
+                values.moment.time = self.values.moment.time;
+            }
+        }
     }
 
     /// The whole scene at a time, in seconds. What no text holds (the sky's map, occluders) is that of `scene`. Errors:
@@ -127,17 +150,13 @@ impl SceneFile {
     /// INVALID_STATE where what moves is no more there.
     pub fn moved(&self, seconds: f64, scene: &Scene, region: Option<Region>) -> Result<Moment> {
         let mut values = Values::of(scene, region);
-        if self.moves_camera() {
-            values.shots.clone_from(&self.values.shots);
-            if self.values.shots.iter().any(|shot| shot.path.is_some()) {
-                values.moment.time = self.values.moment.time;
-            }
-        }
+        self.put_shots(&mut values);
         self.evaluated(values, seconds, scene).map_err(|misfit| explained(misfit, seconds))
     }
 
     fn evaluated(&self, mut values: Values, seconds: f64, scene: &Scene) -> Result<Moment, Misfit> {
-        for track in &self.tracks {
+        let shown = values.shot_at(seconds);
+        for track in self.tracks.iter().filter(|track| track.section.shot().is_none_or(|shot| shot == shown)) {
             let Some(value) = track.value_at(seconds) else { continue };
             let Some(bytes) = values.bytes_mut(track.section) else {
                 let gone = format!("the scene file moves its {}, and the scene has none now", track.field.name);

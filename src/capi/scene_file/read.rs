@@ -13,12 +13,15 @@ use crate::capi::region::BhrRegion;
 use crate::capi::versioned::Versioned;
 use crate::capi::volume::{BhrHotSpot, BhrVolume};
 use crate::error::{Error, Number, Result};
+use crate::image;
 use crate::scene::{HotSpot, Scene, Volume};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
 
 type Given<'t> = Spanned<DeValue<'t>>;
 
@@ -40,8 +43,9 @@ pub(super) fn read(text: &str, folder: &Path) -> Result<SceneFile> {
         let size = text.len();
         return Err(Error::argument(format!("the scene's text has {size} bytes; it may have {MOST_BYTES}")));
     }
-    // Lengths are counted in UTF-8's bytes by the parser as well; a mark of their order at the beginning is none's.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    image::probe(text.len() as u64 * BYTES_A_BYTE)?;
+    check_depth(text).map_err(|mistake| told(text, &mistake))?;
     let table = DeTable::parse(text).map_err(|error| {
         let whole = Mistake { span: error.span().unwrap_or_default(), message: one_line(error.message()) };
         told(text, &whole)
@@ -56,6 +60,35 @@ pub(super) fn read(text: &str, folder: &Path) -> Result<SceneFile> {
         Error::new(error.kind, told.message)
     })?;
     Ok(file)
+}
+
+/// The most memory that the parser takes for a byte of text: a list in a list is two.
+const BYTES_A_BYTE: u64 = 160;
+
+/// The deepest nesting of lists and tables, and the longest chain of dotted names. Scenes have 4 and 2.
+const DEEPEST: usize = 16;
+const LONGEST_CHAIN: usize = 8;
+
+/// The parser's tables are dropped one within another, on the caller's stack.
+fn check_depth(text: &str) -> Checked<()> {
+    let (mut depth, mut dots) = (0_usize, 0_usize);
+    for token in Source::new(text).lex() {
+        match token.kind() {
+            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => (depth, dots) = (depth + 1, 0),
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => depth = depth.saturating_sub(1),
+            TokenKind::Dot => dots += 1,
+            TokenKind::Comma | TokenKind::Equals | TokenKind::Newline => dots = 0,
+            _ => {}
+        }
+        if depth > DEEPEST || dots > LONGEST_CHAIN {
+            let span = token.span().start()..token.span().end();
+            return mistake(
+                span,
+                format!("nested too deeply: {DEEPEST} lists or tables, {LONGEST_CHAIN} dots are allowed"),
+            );
+        }
+    }
+    Ok(())
 }
 
 /// The parser's messages go on over lines, for terminals.
@@ -90,13 +123,23 @@ fn expected<T>(name: &str, what: &str, given: &Given<'_>) -> Checked<T> {
 
 fn number(name: &str, what: &str, given: &Given<'_>) -> Checked<f64> {
     let value = match given.get_ref() {
-        DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
+        // Digits that overflow are no infinity, which is written "inf".
+        DeValue::Float(float) => {
+            let value = float.as_str().parse::<f64>().ok();
+            value.filter(|value| !value.is_infinite() || float.as_str().ends_with("inf"))
+        }
         DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix()).ok().map(|n| n as f64),
         _ => return expected(name, what, given),
     };
-    match value {
-        Some(value) if value.is_finite() => Ok(value),
-        _ => mistake(given.span(), format!("{name} is not a finite number of 64 bits")),
+    value.map_or_else(|| mistake(given.span(), format!("{name} is no number of 64 bits")), Ok)
+}
+
+/// A time of the film, in seconds.
+fn seconds(name: &str, given: &Given<'_>) -> Checked<f64> {
+    let value = number(name, "a time in seconds", given)?;
+    match value.abs() <= MOST_SECONDS {
+        true => Ok(value),
+        false => mistake(given.span(), format!("{name} is {}; it must lie within +-{MOST_SECONDS:e} s", Number(value))),
     }
 }
 
@@ -245,9 +288,12 @@ impl Reader {
         if let Some(cuts) = given.get("cuts") {
             self.cuts(&mut values, cuts)?;
         }
-        let keys = self.tracks.iter().map(|track| track.keys.len()).sum::<usize>() + values.shots.len();
-        if keys > MOST_KEYS {
-            return mistake(0..0, format!("the scene has {keys} keys and cuts; it may have {MOST_KEYS}"));
+        let keys = self.tracks.iter().map(|track| track.keys.len()).sum::<usize>();
+        let times = times_of(&self.tracks, &values).len();
+        if keys > MOST_KEYS || times > MOST_TIMES {
+            let message =
+                format!("the scene has {keys} keys of {times} times; {MOST_KEYS} of {MOST_TIMES} are allowed");
+            return mistake(0..0, message);
         }
         Ok(SceneFile { values, tracks: std::mem::take(&mut self.tracks), map })
     }
@@ -337,7 +383,7 @@ impl Reader {
     }
 
     fn cuts(&mut self, values: &mut Values, given: &Given<'_>) -> Checked<()> {
-        for (cut, shot) in list("cuts", "a list of tables", given)?.iter().zip(1..) {
+        for (cut, shot) in array_of("cuts", MOST_CUTS, given)?.iter().zip(1..) {
             let parts = table("a cut", cut)?;
             if let Some((key, _)) = parts.iter().find(|(key, _)| !["at", "camera"].contains(&key.get_ref().as_ref())) {
                 return mistake(key.span(), format!("a cut has no \"{}\"; it has at, camera", key.get_ref()));
@@ -345,7 +391,7 @@ impl Reader {
             let (Some(at), Some(camera)) = (parts.get("at"), parts.get("camera")) else {
                 return mistake(cut.span(), "a cut has at, a time in seconds, and a camera");
             };
-            let begin = number("at", "a time in seconds", at)?;
+            let begin = seconds("at", at)?;
             let before = values.shots.last().map_or(f64::NEG_INFINITY, |shot| shot.at);
             if begin <= before {
                 return mistake(at.span(), format!("at is {begin}; it must be later than the cut before, {before}"));
@@ -390,11 +436,7 @@ impl Reader {
         if !file.moves() {
             return at(0.0).map_err(|misfit| (misfit, None));
         }
-        let keys = file.tracks.iter().flat_map(|track| &track.keys).map(|key| key.time);
-        let cuts = file.values.shots.iter().map(|shot| shot.at).filter(|at| at.is_finite());
-        let mut times = std::iter::once(0.0).chain(keys).chain(cuts).collect::<Vec<_>>();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
+        let times = times_of(&file.tracks, &file.values);
         times.into_iter().try_for_each(|seconds| at(seconds).map_err(|misfit| (misfit, Some(seconds))))
     }
 
@@ -407,6 +449,16 @@ impl Reader {
         let whole = || self.places.get(&(*section, ""));
         named.min_by_key(|(place, _)| *place).map(|(_, span)| span).or_else(whole).cloned().unwrap_or(0..0)
     }
+}
+
+/// The beginning, and all times of keys and cuts, each once.
+fn times_of(tracks: &[Track], values: &Values) -> Vec<f64> {
+    let keys = tracks.iter().flat_map(|track| &track.keys).map(|key| key.time);
+    let cuts = values.shots.iter().map(|shot| shot.at).filter(|at| at.is_finite());
+    let mut times = std::iter::once(0.0).chain(keys).chain(cuts).collect::<Vec<_>>();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 /// The keys of a scene's text that are no fields.
@@ -430,8 +482,14 @@ const KNOWN: [&str; 17] = [
     "render",
 ];
 
-/// The most keys and cuts of a scene, each of which is tried when it is read.
+/// The most keys of a scene, the most times that they have, at each of which the scene is tried when it is read, and the
+/// most cuts.
 const MOST_KEYS: usize = 100_000;
+const MOST_TIMES: usize = 20_000;
+const MOST_CUTS: usize = 200;
+
+/// The longest times of keys and cuts: thirty years.
+const MOST_SECONDS: f64 = 1e9;
 
 /// The scene that the text changes: that of a new context, with the look that the text names.
 fn base(given: &DeTable<'_>) -> Checked<Scene> {
@@ -492,7 +550,7 @@ fn keys(field: &Field, given: &DeTable<'_>, whole: Range<usize>) -> Checked<Vec<
         let (Some(time_given), Some(value_given), 2..=3) = (parts.first(), parts.get(1), parts.len()) else {
             return mistake(one.span(), format!("a key has {} parts; it must be {WHAT}", parts.len()));
         };
-        let time = number("a key's time", "a number of seconds", time_given)?;
+        let time = seconds("a key's time", time_given)?;
         if let Some(before) = keys.last().filter(|before| before.time > time) {
             let (time, before) = (Number(time), Number(before.time));
             return mistake(time_given.span(), format!("a key's time is {time}; the key before has {before}"));

@@ -182,8 +182,11 @@ fn mistakes_are_told_where_they_stand() {
         ("[hole]\naxis = [0, 1]", "line 2, column 8: axis has 2 numbers; it must be a list of 3 numbers"),
         ("[hole]\naxis = [0, 1, 'z']", "line 2, column 15: axis is text"),
         ("holes = 1", "line 1, column 1: the scene has no \"holes\""),
-        ("[hole]\nspin = nan", "line 2, column 8: spin is not a finite number"),
-        ("[hole]\nspin = 1e999", "line 2, column 8: spin is not a finite number"),
+        ("[hole]\nspin = nan", "line 2, column 8: [hole]: spin is NaN; it must lie in"),
+        ("[hole]\nspin = 1e999", "line 2, column 8: spin is no number of 64 bits"),
+        ("a = [[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]", "line 1, column 21: nested too deeply"),
+        ("a.a.a.a.a.a.a.a.a.a = 1", "line 1, column 18: nested too deeply"),
+        ("time = { keys = [[-1e308, 0], [1e308, 1]] }", "a key's time is -1e308; it must lie within +-1e9 s"),
         ("[disk]\ninner_radius = 9\nouter_radius = 5", "line 3, column 16: [disk]: disk outer_radius is 5"),
         ("[disk]\nflags = ['retrograd']", "line 2, column 10: flags is \"retrograd\"; known are \"retrograde\""),
         ("[disk]\nseed = -1", "line 2, column 8: seed is -1; it must lie in [0, 18446744073709551615]"),
@@ -208,7 +211,7 @@ fn mistakes_are_told_where_they_stand() {
         ("[camera]\nlook_at = [1, 2, 3]\nforward = [1, 0, 0]", "line 2, column 11: a camera has look_at, or forward"),
         ("[camera]\nfov_y = '45'", "line 2, column 9: fov_y is \"45\"; it must be a number of radians, or degrees"),
         ("[camera]\nfov_y = 4", "line 2, column 9: [camera]: camera fov_y is 4"),
-        ("[camera]\nposition = [1, 0, 0]\nmotion = 'free_fall'\nproper_time = 9", "[camera] at 0 s: the fall from"),
+        ("[camera]\nposition = [1, 0, 0]\nmotion = 'free_fall'\nproper_time = 9", "[camera]: the fall from"),
         ("[camera.fov_y]\nkeys = [[0, 1], [1, 4]]", "[camera] at 1 s: camera fov_y is 4"),
         ("time = { keys = [[1, 0], [0, 0]] }", "line 1, column 27: a key's time is 0; the key before has 1"),
         ("time = { keys = [[1, 0], [1, 1], [1, 2]] }", "three keys have the time 1"),
@@ -289,6 +292,54 @@ fn what_moves_is_saved_as_it_was_loaded() {
     assert_eq!(file.render().unwrap().width, 300);
 }
 
+/// A camera that does not move is a host's as soon as it sets another, and so is the rest of one whose field of view
+/// moves.
+#[test]
+fn cameras_that_do_not_move_are_left_alone() {
+    let still = parsed("time = 3\n[camera]\nposition = [0, 30, 3]\nmotion = 'orbit'\nproper_time = 2");
+    assert!(!still.moves());
+    let mut scene = scene_at(&still, 0.0);
+    let placed = scene.camera.position;
+    assert!(scene.time > 3.0 && placed != DVec3::new(0.0, 30.0, 3.0), "{placed}");
+    let again = parsed(&still.updated(&scene, None, None).unwrap().text(None).unwrap());
+    same(&Values::of(&scene, None), &Values::of(&scene_at(&again, 7.0), None));
+    scene.camera.position = DVec3::new(1.0, 2.0, 9.0);
+    assert_eq!(still.moved(1.0, &scene, None).unwrap().scene.camera, scene.camera);
+    let zoom = parsed("[camera]\nposition = [0, 30, 3]\nfov_y = { keys = [[0, 1], [1, 2]] }");
+    let zoomed = zoom.moved(0.5, &scene, None).unwrap().scene.camera;
+    assert_eq!((zoomed.position, zoomed.fov_y), (scene.camera.position, 1.5));
+}
+
+/// Numbers that a setter takes because nothing reads them come back as well.
+#[test]
+fn numbers_that_mean_nothing_come_back() {
+    let mut scene = Scene::default();
+    scene.camera.projection = crate::scene::Projection::Equirect;
+    for fov_y in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        scene.camera.fov_y = fov_y;
+        if scene.camera.check().is_ok() {
+            let text = SceneFile::of(&scene, None, None).unwrap().text(None).unwrap();
+            assert_eq!(scene_of(&text).camera.fov_y.to_bits(), fov_y.to_bits(), "{text}");
+        }
+    }
+}
+
+#[test]
+fn hostile_texts_take_little() {
+    let cuts = (0..100_000).map(|i| format!("{{at={i},camera={{}}}},")).collect::<String>();
+    assert!(refused(&format!("cuts = [{cuts}]")).contains("cuts are 100000; there may be 200"));
+    let keys = (0..30_000).map(|i| format!("[{i}, 1],")).collect::<String>();
+    assert!(refused(&format!("time = {{ keys = [{keys}] }}")).contains("30000 keys of 30000 times"));
+    // Within the bounds it takes a moment, on a small stack.
+    let keys = (0..19_000).map(|i| format!("[{i}, {}],", 1.0 + f64::from(i) * 1e-6)).collect::<String>();
+    let text = format!("[camera]\nposition = [0, 9, 1]\nmotion = 'orbit'\nproper_time = {{ keys = [{keys}] }}");
+    let deep = "a={".repeat(16) + &"}".repeat(16);
+    let on_little =
+        move || (SceneFile::parse(&text, Path::new("")).is_ok(), SceneFile::parse(&deep, Path::new("")).is_err());
+    let thread = std::thread::Builder::new().stack_size(256 * 1024).spawn(on_little).unwrap();
+    assert_eq!(thread.join().unwrap(), (true, true));
+}
+
 #[test]
 fn attributes_name_every_parameter_once() {
     let mut scene = Scene::default();
@@ -305,7 +356,7 @@ fn attributes_name_every_parameter_once() {
     assert_eq!(value("bhr.camera.motion").as_deref(), Some("Text(\"FREE_FALL\")"));
     assert_eq!(value("bhr.camera.position").as_deref(), Some("Text(\"0 26 2.5\")"));
     assert_eq!(value("bhr.disk.retrograde").as_deref(), Some("Number(0.0)"));
-    assert_eq!(value("bhr.disk.reference").as_deref(), Some("Text(\"MEDIAN\")"));
+    assert_eq!(value("bhr.disk.reference").as_deref(), Some("Text(\"AT_MEDIAN\")"));
     assert_eq!(value("bhr.region.y").as_deref(), Some("Number(2.0)"));
     assert_eq!(value("bhr.view").as_deref(), Some("Text(\"LIGHT\")"));
     names.sort_unstable();

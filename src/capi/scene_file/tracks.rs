@@ -58,16 +58,17 @@ impl Track {
         let share = (seconds - from.time) / length;
         // A unit quaternion and its negative are one rotation: the nearer of the two is the shorter way.
         let is_rotation = a.len() == MOST_NUMBERS;
-        let sign = |of: &[f64]| {
-            let is_far = is_rotation && a.iter().zip(of).map(|(a, b)| a * b).sum::<f64>() < 0.0;
+        let nearer = |one: &[f64], other: &[f64]| {
+            let is_far = is_rotation && one.iter().zip(other).map(|(a, b)| a * b).sum::<f64>() < 0.0;
             if is_far { -1.0 } else { 1.0 }
         };
-        let beside = |index: Option<usize>, time| {
+        let sign = nearer(a, b);
+        let beside = |index: Option<usize>, time, next: &[f64], sign: f64| {
             let (beside, numbers) = self.neighbour(index?, time)?;
-            Some((beside, numbers, sign(numbers)))
+            Some((beside, numbers, sign * nearer(next, numbers)))
         };
-        let before = beside(first.checked_sub(1), from.time);
-        let behind = beside(Some(after + 1), to.time).filter(|_| to.curve != Curve::Hold);
+        let before = beside(first.checked_sub(1), from.time, a, 1.0);
+        let behind = beside(Some(after + 1), to.time, b, sign).filter(|_| to.curve != Curve::Hold);
         let part = |of: &[f64], i: usize| of.get(i).copied().unwrap_or_default();
         let between = |i: usize, a: f64, b: f64| match from.curve {
             Curve::Hold => a,
@@ -80,7 +81,6 @@ impl Track {
                 hermite(share, a, b, begin * length, end * length)
             }
         };
-        let sign = sign(b);
         let mut value: ArrayVec<f64, MOST_NUMBERS> =
             a.iter().zip(b).enumerate().map(|(i, (a, b))| between(i, *a, sign * b)).collect();
         if is_rotation {
@@ -162,6 +162,33 @@ mod tests {
         use Curve::{CatmullRom, Linear};
         let cut = track(&[(0.0, 0.0, Linear), (1.0, 1.0, Linear), (1.0, 8.0, CatmullRom), (2.0, 9.0, CatmullRom)]);
         assert_eq!([0.5, 1.0, 1.5].map(|time| at(&cut, time)), [0.5, 8.0, 8.5]);
+    }
+
+    /// Turns by 100 degrees from key to key, whose quaternions are given with any sign: the speed has no dips at keys.
+    #[test]
+    fn a_rotation_turns_smoothly_through_its_keys() {
+        let key = |time: f64| {
+            let half = (50.0 * time).to_radians();
+            let sign = if time == 2.0 { -1.0 } else { 1.0 };
+            let value = [0.0, 0.0, sign * half.sin(), sign * half.cos()];
+            Key { time, value: Value::Numbers(value.into_iter().collect()), curve: Curve::CatmullRom }
+        };
+        let keys = [0.0, 1.0, 2.0, 3.0].map(key).to_vec();
+        let turn = Track { section: Section::Sky, field: &FIELD, keys };
+        let angle = |time: f64| match turn.value_at(time) {
+            Some(Value::Numbers(q)) => 2.0 * q[2].atan2(q[3]),
+            other => panic!("{other:?}"),
+        };
+        let speed = |time: f64| {
+            let difference = angle(time + 1e-5) - angle(time - 1e-5);
+            let turned = difference - (difference / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+            (turned / 2e-5).to_degrees()
+        };
+        for time in [0.95, 1.05, 1.5, 1.95, 2.05] {
+            assert!((75.0..130.0).contains(&speed(time)), "{time}: {}", speed(time));
+        }
+        let jump = speed(1.0 - 1e-4) - speed(1.0 + 1e-4);
+        assert!(jump.abs() < 1.0, "{jump}");
     }
 
     #[test]

@@ -200,8 +200,9 @@ impl Shot {
             (camera, time) = scene.advance_camera(&camera, proper_time)?;
             if let Some(Aim { look_at }) = self.aim {
                 camera.forward = DVec3::from_array(look_at) - camera.position;
-                camera.check()?;
             }
+            // A way that is too long for numbers ends nowhere.
+            camera.check()?;
         }
         Ok((camera, time))
     }

@@ -121,17 +121,22 @@ fn keys(track: &Track) -> String {
     format!("{{ keys = [{keys}], curve = \"{}\" }}", usual.word())
 }
 
+/// The shortest digits that are read back as they were. Fields that others make meaningless may be set to NaN.
+fn number(number: f64) -> String {
+    if number.is_nan() { "nan".into() } else { format!("{number:?}") }
+}
+
 fn value(kind: Kind, value: &Value) -> String {
     match (kind, value) {
         (Kind::Numbers(1) | Kind::Angle, Value::Numbers(numbers)) => {
-            numbers.first().map_or_else(|| "0.0".into(), |number| format!("{number:?}"))
+            numbers.first().copied().map_or_else(|| "0.0".into(), number)
         }
         (_, Value::Numbers(numbers)) => {
-            let parts = numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>();
+            let parts = numbers.iter().copied().map(number).collect::<Vec<_>>();
             format!("[{}]", parts.join(", "))
         }
-        (Kind::Word(words), Value::Word(number)) => {
-            word_of(*number, words).map_or_else(|| number.to_string(), |word| format!("\"{word}\""))
+        (Kind::Word(words), Value::Word(of)) => {
+            word_of(*of, words).map_or_else(|| of.to_string(), |word| format!("\"{word}\""))
         }
         (Kind::Bits(words), Value::Bits(bits)) => {
             let (found, rest) = words_of(*bits, words);

@@ -33,3 +33,4 @@ pub use layer::{Alpha, Attribute, Layer};
 pub use load::{decode_png, load, load_text};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
 pub use save::{save, save_layers, save_text};
+pub use support::probe;

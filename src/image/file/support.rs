@@ -70,7 +70,7 @@ pub(super) fn zeros<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>> {
 /// Fails unless `bytes` more bytes could be had right now. Codecs allocate in ways that end the process where there
 /// is no memory; therefore the most that one may need is allocated, and freed again, before it starts. Errors:
 /// OUT_OF_MEMORY.
-pub(super) fn probe(bytes: u64) -> Result<()> {
+pub fn probe(bytes: u64) -> Result<()> {
     match usize::try_from(bytes) {
         Ok(bytes) => reserve::<u8>(bytes).map(drop),
         Err(_) => Err(no_memory(bytes.into())),
