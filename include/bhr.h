@@ -1153,8 +1153,7 @@ BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *reg
 /** Sets the whole scene from text: everything that setters take, under the names of this header, in TOML, as
  * docs/scenes.md describes it. What it does not name has the value of a new context, or of the preset that it names;
  * values may change with time, and the scene is that of 0 seconds. Frames show all of it or nothing. The text has
- * size bytes of UTF-8, at most 4 MiB. Paths are relative to the current folder. Occluders and callbacks
- * are left alone.
+ * size bytes of UTF-8, at most 4 MiB. Paths are relative to the current folder. Occluders and callbacks are left alone.
  * Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
  * unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE and
  * UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0 */
@@ -1183,15 +1182,16 @@ BHR_NODISCARD BhrStatus bhr_scene_pictures(const BhrContext *context, uint32_t *
 
 /** Writes the scene as it is set as text that bhr_scene_load reads back bit by bit: *out_size becomes the length of the
  * text in bytes without the NUL that ends it, and buffer, unless it is NULL, gets both. What changes with time in the
- * text that was loaded last is written as it was read, so that the scene that is read is that of 0 seconds. Occluders are not part of it;
- * paths are absolute.
+ * text that was loaded last is written as it was read, so that the scene that is read is that of 0 seconds. Occluders
+ * are not part of it; paths are absolute.
  * Errors: INVALID_ARGUMENT for a buffer of fewer than *out_size + 1 bytes, which then stays as it was; UNSUPPORTED
- * for a map of the sky that has no path: one of bhr_set_sky_map or bhr_set_sky_target. @since 0.2.0 */
+ * for a map of the sky whose path is not UTF-8, or that has none: one of bhr_set_sky_map or bhr_set_sky_target.
+ * @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_save(const BhrContext *context, char *buffer, size_t size, size_t *out_size);
 
 /** Writes the scene as it is set to a file, as bhr_scene_save does to memory. The path of a map in the file's folder,
  * or below it, is relative to that. A file is replaced as bhr_image_save does it.
- * Errors: UNSUPPORTED as bhr_scene_save, also for a map's path that is not UTF-8; IO. @since 0.2.0 */
+ * Errors: UNSUPPORTED as bhr_scene_save; IO. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_save_file(const BhrContext *context, const char *path);
 
 /* ---- rendering into memory ---- */
