@@ -104,7 +104,7 @@ impl Encoders {
                         self.frame_bytes
                     )));
                 }
-                // What there is has to do.
+                // The buffers that there are have to do.
                 (Err(_), there) => self.most_buffers = there,
             }
         }

@@ -67,7 +67,8 @@ fn loaded(state: &State) -> Result<&dyn Loaded> {
 /// Sets the whole scene from text: everything that setters take, under the names of this header, in TOML, as
 /// docs/scenes.md describes it. What it does not name has the value of a new context, or of the preset that it names;
 /// values may change with time, and the scene is that of 0 seconds. Frames show all of it or nothing. The text has
-/// size bytes of UTF-8, at most 4 MiB. Paths are relative to the current folder. Occluders and callbacks are left alone.
+/// size bytes of UTF-8, at most 4 MiB. Paths are relative to the current folder. Occluders and callbacks are left
+/// alone.
 /// Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
 /// unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE and
 /// UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0

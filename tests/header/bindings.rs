@@ -17,8 +17,8 @@ const BITS_NOT_IN_PYTHON: [&str; 2] = ["ContextFlags", "ImageFlags"];
 /// Enumerations that are told and never given: their members go by no names.
 const ONLY_TOLD: [&str; 2] = ["Status", "Fate"];
 
-/// The structs that a C++ program fills in, with the defaults of their *_init functions; of the camera the fields, which
-/// camera.hpp gives methods.
+/// The structs that a C++ program fills in, with the defaults of their *_init functions; of the camera the fields,
+/// which camera.hpp gives methods.
 const STRUCTS: [&str; 8] =
     ["BhrCamera", "BhrDisk", "BhrVolume", "BhrHotSpot", "BhrSky", "BhrFilm", "BhrPresetOptions", "BhrQuality"];
 
@@ -252,8 +252,9 @@ fn python_class(name: &str, base: &str, about: &str, members: &[Member]) -> Stri
 
 fn constants_py(json: &Value) -> String {
     let mut code = format!(
-        "# SPDX-License-Identifier: MIT OR Apache-2.0\n\"\"\"The constants of bhr.h as enumerations, and the names that \
-         stand for their members. bhr.h says at length what each one\nmeans. {MADE}\"\"\"\n\n\
+        "# SPDX-License-Identifier: MIT OR Apache-2.0\n\
+         \"\"\"The constants of bhr.h as enumerations, and the names that \
+         stand for their members. bhr.h says at length what each\none means. {MADE}\"\"\"\n\n\
          from __future__ import annotations\n\nimport enum\nfrom typing import Any, Literal, Union\n"
     );
     let mut named = Vec::new();

@@ -21,7 +21,14 @@ const FOLDERS: [&str; 6] = ["examples-c", "examples-other", "include", "python/s
 
 /// Files that are generated, and what tests only.
 fn is_left_out(path: &Path) -> bool {
-    ["include/bhr.h", "include/bhr.json", "include/bhr_interop.h"].iter().any(|name| path == Path::new(name))
+    let generated = [
+        "include/bhr.h",
+        "include/bhr.json",
+        "include/bhr_interop.h",
+        "include/bhr/structs.hpp",
+        "src/capi/field_list.rs",
+    ];
+    generated.iter().any(|name| path == Path::new(name))
         || path.starts_with("src/gpu/twins")
         || path.ends_with("tests.rs")
 }
@@ -81,7 +88,7 @@ fn lists_of_fields_name_every_mirror() {
     let mut wrong = Vec::new();
     for (name, fields) in STRUCTS {
         let (found, list) = (mirrors(fields), listed(&page, name));
-        assert!(found.len() > 8, "{name}: {found:?}");
+        assert!(found.len() > 5, "{name}: {found:?}");
         let missing = found.difference(&list).map(|path| format!("{name}: its list lacks {}", path.display()));
         wrong.extend(missing);
         for path in &list {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The constants of bhr.h as enumerations, and the names that stand for their members. bhr.h says at length what each one
-means. Made by tests/header/bindings.rs from include/bhr.json; do not edit."""
+"""The constants of bhr.h as enumerations, and the names that stand for their members. bhr.h says at length what each
+one means. Made by tests/header/bindings.rs from include/bhr.json; do not edit."""
 
 from __future__ import annotations
 

@@ -314,23 +314,6 @@ class Context(SceneText, Tracing):
         """None: black."""
         self._set(lib.bhr_set_sky, Sky.c_of(sky, "sky", or_none=True))
 
-    def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
-        """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes
-        it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left. A file's path is
-        part of what `save` writes."""
-        if isinstance(picture, (str, os.PathLike)):
-            self._set(lib.bhr_set_sky_map_file, _path(picture))
-            self._targets.pop("sky", None)
-            return
-        if isinstance(picture, np.ndarray):
-            frame: Frame | None = Frame(picture)
-        elif picture is None or isinstance(picture, Frame):
-            frame = picture
-        else:
-            raise TypeError(f"a sky map is a path, a bhr.Frame or a numpy array, not {type(picture).__name__}")
-        self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
-        self._targets.pop("sky", None)
-
     @property
     def film(self) -> Film:
         return Film.from_c(self._read("BhrFilm", lib.bhr_get_film))

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The part of a context that reads and writes its scene as text, and sets what moves in it. Knows no frames."""
+"""The part of a context that reads and writes its scene as text, sets what moves in it, and takes the sky's map."""
 
 from __future__ import annotations
 
 import os
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from ._constants import Status
 from ._ffi import ffi
-from ._frame import _path
+from ._frame import Frame, _path
 from ._gate import Gate
 from ._library import check, lib
 
@@ -80,3 +83,20 @@ class SceneText:
                 if status != Status.INVALID_ARGUMENT:
                     check(status)
                     return ffi.string(text).decode()
+
+    def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
+        """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes
+        it. The north pole is at the top, right ascension 0 in the middle, and it grows to the left. A file's path is
+        part of what `save` writes."""
+        if isinstance(picture, (str, os.PathLike)):
+            self._call(lib.bhr_set_sky_map_file, _path(picture))
+            self._targets.pop("sky", None)
+            return
+        if isinstance(picture, np.ndarray):
+            frame: Frame | None = Frame(picture)
+        elif picture is None or isinstance(picture, Frame):
+            frame = picture
+        else:
+            raise TypeError(f"a sky map is a path, a bhr.Frame or a numpy array, not {type(picture).__name__}")
+        self._call(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
+        self._targets.pop("sky", None)

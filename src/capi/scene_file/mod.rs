@@ -89,8 +89,8 @@ impl SceneFile {
         write::write(self, folder)
     }
 
-    /// The text without all that decides no pixel's value but by its content, or by the moment: the path of the map, and
-    /// the pictures that are asked for. For fingerprints.
+    /// The text without what decides pixels by its content, or by the moment: the path of the map, and the pictures
+    /// that are asked for. For fingerprints.
     pub fn text_of_pixels(&self) -> Result<String> {
         let mut bare = self.clone();
         (bare.map, bare.values.render) = (None, None);

@@ -482,8 +482,8 @@ const KNOWN: [&str; 17] = [
     "render",
 ];
 
-/// The most keys of a scene, the most times that they have, at each of which the scene is tried when it is read, and the
-/// most cuts.
+/// The most keys of a scene, the most times that they have, at each of which the scene is tried when it is read, and
+/// the most cuts.
 const MOST_KEYS: usize = 100_000;
 const MOST_TIMES: usize = 20_000;
 const MOST_CUTS: usize = 200;
