@@ -4,7 +4,7 @@
 
 use crate::ending::Ending;
 use crate::manifest::Made;
-use bhr::image::{Alpha, Attribute, ImageRef, Layer, Layout, save, save_layers};
+use bhr::image::{Alpha, Attribute, Effort, ImageRef, Layer, Layout, save, save_layers};
 use bhr::scene::Output;
 use std::fs::File;
 use std::path::PathBuf;
@@ -24,6 +24,7 @@ pub struct Frame {
     pub layout: Layout,
     pub transparent: bool,
     pub attributes: Vec<(String, Attribute)>,
+    pub effort: Effort,
     pub made: Made,
     pub manifest: PathBuf,
     /// Held while the frame is being made.
@@ -154,7 +155,7 @@ fn write(frame: &Frame) -> Result<(), Ending> {
         save(&image, if frame.transparent { Alpha::Premultiplied } else { Alpha::AsInFile }, file)?;
     } else {
         let channels = Output::of_view(bhr::scene::View::Light).channels();
-        save_layers(&[Layer { channels, image }], &frame.attributes, file)?;
+        save_layers(&[Layer { channels, image }], &frame.attributes, frame.effort, file)?;
     }
     frame.made.note(&frame.manifest)
 }

@@ -5,7 +5,7 @@
 use crate::ending::Ending;
 use crate::manifest::{Fingerprint, Manifest};
 use crate::progress::say;
-use bhr::image::{Alpha, ImageRef, Layer, Layout, Loaded, PixelFormat, load, save, save_layers};
+use bhr::image::{Alpha, Effort, ImageRef, Layer, Layout, Loaded, PixelFormat, load, save, save_layers};
 use bhr::scene::{Output, Region};
 use clap::ArgMatches;
 use half::f16;
@@ -128,7 +128,7 @@ impl Joined {
                 let layout = Layout::packed(PixelFormat::Rgba16F, width, height);
                 let image = ImageRef::new(layout, bytemuck::cast_slice(halves))?;
                 let channels = Output::of_view(bhr::scene::View::Light).channels();
-                save_layers(&[Layer { channels, image }], &[], out)?;
+                save_layers(&[Layer { channels, image }], &[], Effort::default(), out)?;
             }
         }
         Ok(())

@@ -72,6 +72,10 @@ fn command() -> Command {
             option("encoders", "N", "Threads that write files, to 256; 0: one a core")
                 .value_parser(value_parser!(u32).range(0..=MOST_ENCODERS)),
         )
+        .arg(
+            option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 4")
+                .value_parser(value_parser!(i32).range(1..=9)),
+        )
         .arg(option("progress", "KIND", "auto, bar, plain, json, openjd or none").default_value("auto"))
         .args(device());
     Command::new("bhr")

@@ -10,7 +10,7 @@ use crate::manifest::{Fingerprint, Made, Manifest, Tile, hash};
 use crate::open::{self, Opened, recovering};
 use crate::progress::{Progress, say};
 use crate::signals::Signals;
-use bhr::image::{ImageMut, Layout, PixelFormat};
+use bhr::image::{Effort, ImageMut, Layout, PixelFormat};
 use bhr::renderer::Renderer;
 use bhr::scene::Region;
 use bhr::scene_file::parameters;
@@ -127,7 +127,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         return dry_run(&order, &list, &mut renderer, &signals);
     }
     let encoders = given.get_one::<u32>("encoders").copied().unwrap_or(0) as usize;
-    let run = Run { order: &order, names: &names, again: given.get_flag("again"), signals: &signals };
+    let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
+    let run = Run { order: &order, names: &names, again: given.get_flag("again"), effort, signals: &signals };
     let result = run.frames(list, encoders, &mut renderer, &mut progress);
     progress.end();
     result
@@ -137,6 +138,7 @@ struct Run<'a> {
     order: &'a Order,
     names: &'a Names,
     again: bool,
+    effort: Effort,
     signals: &'a Signals,
 }
 
@@ -246,6 +248,7 @@ impl Run<'_> {
             pixels,
             layout,
             transparent: self.order.transparent,
+            effort: self.effort,
             attributes: if layout.format.is_developed() { Vec::new() } else { parameters(&made) },
             manifest: self.names.manifest(),
             made: Made {

@@ -7,5 +7,5 @@ pub mod memory;
 pub mod file;
 
 pub use copiers::Copiers;
-pub use file::{Alpha, Attribute, Layer, Loaded, Pixels, load, load_text, probe, save, save_layers, save_text};
+pub use file::{Alpha, Attribute, Effort, Layer, Loaded, Pixels, load, load_text, probe, save, save_layers, save_text};
 pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

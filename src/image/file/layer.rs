@@ -18,6 +18,17 @@ pub enum Attribute {
     Text(String),
 }
 
+/// The work that is done to make a file of layers small: a level of zlib, 1 .. 9.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort(pub i32);
+
+impl Default for Effort {
+    /// Level 4; level 1 takes half of its time, and makes files larger by a fifth.
+    fn default() -> Self {
+        Self(4)
+    }
+}
+
 /// How an image's colours go with its alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alpha {

@@ -29,7 +29,7 @@ mod colour_tests;
 #[cfg(all(test, feature = "exr"))]
 mod layer_tests;
 
-pub use layer::{Alpha, Attribute, Layer};
+pub use layer::{Alpha, Attribute, Effort, Layer};
 pub use load::{decode_png, load, load_text};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
 pub use save::{save, save_layers, save_text};

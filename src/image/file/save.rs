@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Writing image files: the kind of file that goes with a path and a format.
 
-use super::layer::{Alpha, Attribute, Layer};
+use super::layer::{Alpha, Attribute, Effort, Layer};
 use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};
 use crate::error::{Error, Result};
@@ -68,7 +68,12 @@ pub fn save_text(text: &str, path: &Path) -> Result<()> {
 /// Writes float images of one size to one `.exr` file, each channel by its name, with attributes. It appears as in
 /// [`save`]. Errors: UNSUPPORTED for another extension or an 8-bit format, and for EXR without the cargo feature;
 /// INVALID_ARGUMENT for two channels of one name; IO; OUT_OF_MEMORY.
-pub fn save_layers(layers: &[Layer<'_>], attributes: &[(String, Attribute)], path: &Path) -> Result<()> {
+pub fn save_layers(
+    layers: &[Layer<'_>],
+    attributes: &[(String, Attribute)],
+    effort: Effort,
+    path: &Path,
+) -> Result<()> {
     for layer in layers {
         let FileKind::Exr = kind_for(path, layer.image.format())? else {
             let format = layer.image.format();
@@ -78,7 +83,7 @@ pub fn save_layers(layers: &[Layer<'_>], attributes: &[(String, Attribute)], pat
     let write = || {
         replace::with(path, |file| {
             let mut file = BufWriter::new(file);
-            encode_layers(layers, attributes, &mut file)?;
+            encode_layers(layers, attributes, effort, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
         })
     };
@@ -89,13 +94,19 @@ pub fn save_layers(layers: &[Layer<'_>], attributes: &[(String, Attribute)], pat
 fn encode_layers(
     layers: &[Layer<'_>],
     attributes: &[(String, Attribute)],
+    effort: Effort,
     file: &mut BufWriter<std::fs::File>,
 ) -> Result<()> {
-    super::layers::write(layers, attributes, file)
+    super::layers::write(layers, attributes, effort, file)
 }
 
 #[cfg(not(feature = "exr"))]
-fn encode_layers(_: &[Layer<'_>], _: &[(String, Attribute)], _: &mut BufWriter<std::fs::File>) -> Result<()> {
+fn encode_layers(
+    _: &[Layer<'_>],
+    _: &[(String, Attribute)],
+    _: Effort,
+    _: &mut BufWriter<std::fs::File>,
+) -> Result<()> {
     Err(Error::unsupported(super::support::WITHOUT_EXR))
 }
 
