@@ -592,20 +592,20 @@ typedef struct BhrDisk {
     /** In M, 0 .. 1e6. The disk begins here, but not inside the ISCO, or with BHR_DISK_PLUNGES not inside the
      * horizon. Default 0: at the ISCO, or at the horizon. */
     double inner_radius;
-    double outer_radius; /**< In M, greater than inner_radius, to 1e6. Default 17. */
+    double outer_radius; /**< In M, 0 .. 1e6, greater than inner_radius. Default 17. */
     double temperature;  /**< Kelvin at the ring that `reference` says, 500 .. 1e9. Default 3500. */
     double opacity;      /**< 0 .. 1. Default 1. */
     double brightness;   /**< 0 .. 1e6: the luminance of that ring at rest. Default 0.6. */
-    /** Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default). Its mean is the smooth
+    /** Contrast of the structure that orbits with the matter, 0 .. 1; 0 is smooth. Default 1. Its mean is the smooth
      * disk's light. bhr_set_time carries it along, forwards and backwards, at any time to 1e9 M and more. */
     double turbulence;
     uint64_t seed; /**< Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0. */
     /** BHR_DISK_AT_*. Default AT_MEDIAN; AT_HOTTEST in structs of 0.1.0's size. @since 0.2.0 */
     BhrDiskReference reference;
     BhrEmissionLaw emission_law; /**< BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED. @since 0.2.0 */
-    /** 0 sharp .. 1, default 0.4: opacity and light fade to nothing over this share of the way from the inner edge
-     * to the outer one, at its end, and near the ISCO. A disk that inner_radius cuts off outside the hottest ring
-     * is sharp there. @since 0.2.0 */
+    /** 0 .. 1, default 0.4, 0 is sharp: opacity and light fade to nothing over this share of the way from the inner
+     * edge to the outer one, at its end, and near the ISCO. A disk that inner_radius cuts off outside the hottest
+     * ring is sharp there. @since 0.2.0 */
     double edge_softness;
 } BhrDisk;
 
@@ -673,7 +673,7 @@ typedef struct BhrVolume {
     /** In M, 1e-6 .. 1e4, or 0 (default): the ISCO of matter that moves as flags say. DISK, JET: the inner edge;
      * OUTFLOW: the place where matter is at rest. */
     double inner_radius;
-    /** In M, greater than inner_radius, to 1e4. There is nothing beyond it, whatever the shape, and nothing at all
+    /** In M, 0 .. 1e4, greater than inner_radius. There is nothing beyond it, whatever the shape, and nothing at all
      * of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, be that the ISCO. Default 17. */
     double outer_radius;
     double radius; /**< In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8. */
@@ -696,7 +696,7 @@ typedef struct BhrVolume {
      * that nothing shines through; of a power law, of 1 M of density 1 at rest which absorbs nothing. Default 1. */
     double brightness;
     double sub_keplerian; /**< KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1. Default 1. */
-    /** KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall from rest at infinity. */
+    /** KEPLERIAN: a share without a unit, 0 .. 1: 0 (default) is orbits, 1 free fall from rest at infinity. */
     double infall;
     double angular_momentum; /**< ANGULAR_MOMENTUM: 0 .. 1. Default 1. */
     double speed;            /**< OUTFLOW: the velocity far away in units of c, 0 .. 0.995. Default 0.9. */
@@ -929,14 +929,14 @@ typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
     double exposure_ev;   /**< Stops, -20 .. 20. Default 0. */
-    /** Glare, 0 off .. 1, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
+    /** Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
      * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
      * images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
      * was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the
      * formula. */
     double bloom;
     /** The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
-     * frame heights, 0 off (default) .. 1. Alpha is left alone. With a region set, 8-bit images of light are
+     * frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are
      * INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md. @since 0.2.0 */
     double beam_fwhm;
     BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0 */
@@ -1060,7 +1060,7 @@ typedef int32_t BhrVolumeResolution;
 typedef struct BhrQuality {
     uint32_t struct_size; /**< sizeof(BhrQuality). */
     BhrMethod method;     /**< BHR_METHOD_*. Default AUTO. */
-    /** Samples of each pixel, 1 (default) .. 256. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
+    /** Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
      * they lie evenly in the pixel. Views other than BHR_VIEW_LIGHT take one. Pixels that an edge runs through get
      * more rays in any case. */
     uint32_t samples_per_pixel;
@@ -1071,7 +1071,7 @@ typedef struct BhrQuality {
     /** ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers use their
      * own. */
     double tolerance;
-    uint32_t max_disk_order; /**< Images of the disk to follow, 0 (the direct one only) .. 15. Default 3. */
+    uint32_t max_disk_order; /**< Images of the disk to follow, 0 .. 15; 0: the direct one only. Default 3. */
     uint32_t reserved;       /**< Reserved: 0. */
     double render_scale;     /**< Windows: traced size / window size, 0.1 .. 1. Default 1. */
     /** BHR_VOLUME_RESOLUTION_*. Default FULL. No effect without volumes and hot spots. @since 0.2.0 */

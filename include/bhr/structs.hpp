@@ -63,7 +63,7 @@ struct Disk {
     DiskFlags flags;
     /// In M, 0 ..
     double inner_radius;
-    /// In M, greater than inner_radius, to 1e6.
+    /// In M, 0 ..
     double outer_radius;
     /// Kelvin at the ring that `reference` says, 500 ..
     double temperature;
@@ -71,7 +71,7 @@ struct Disk {
     double opacity;
     /// 0 ..
     double brightness;
-    /// Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default).
+    /// Contrast of the structure that orbits with the matter, 0 ..
     double turbulence;
     /// Selects the turbulence: the same seed always gives the same pattern.
     std::uint64_t seed;
@@ -79,7 +79,7 @@ struct Disk {
     DiskReference reference;
     /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED.
     EmissionLaw emission_law;
-    /// 0 sharp ..
+    /// 0 ..
     double edge_softness;
 
     Disk() noexcept { detail::defaults(*this, bhr_disk_init); }
@@ -99,7 +99,7 @@ struct Volume {
     Flow flow;
     /// In M, 1e-6 ..
     double inner_radius;
-    /// In M, greater than inner_radius, to 1e4.
+    /// In M, 0 ..
     double outer_radius;
     /// In M, 0.1 ..
     double radius;
@@ -125,7 +125,7 @@ struct Volume {
     double brightness;
     /// KEPLERIAN: the share of the orbit's angular momentum, 0 ..
     double sub_keplerian;
-    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall from rest at infinity.
+    /// KEPLERIAN: a share without a unit, 0 ..
     double infall;
     /// ANGULAR_MOMENTUM: 0 ..
     double angular_momentum;
@@ -201,14 +201,14 @@ struct Film {
     ToneMap tone_map;
     /// Stops, -20 ..
     double exposure_ev;
-    /// Glare, 0 off ..
+    /// Glare, 0 ..
     double bloom;
     /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
-    /// heights, 0 off (default) ..
+    /// heights, 0 ..
     double beam_fwhm;
     /// BHR_COLOUR_MAP_*.
     ColourMap colour_map;
-    /// 0.
+    /// Reserved: 0.
     std::uint32_t reserved;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
@@ -243,7 +243,7 @@ struct Quality {
     std::uint32_t struct_size;
     /// BHR_METHOD_*.
     Method method;
-    /// Samples of each pixel, 1 (default) ..
+    /// Samples of each pixel, 1 ..
     std::uint32_t samples_per_pixel;
     /// Steps of an integrated ray, 16 ..
     std::uint32_t max_steps;
@@ -251,7 +251,7 @@ struct Quality {
     double step;
     /// ADAPTIVE: the relative tolerance, 1e-14 ..
     double tolerance;
-    /// Images of the disk to follow, 0 (the direct one only) ..
+    /// Images of the disk to follow, 0 ..
     std::uint32_t max_disk_order;
     /// Reserved: 0.
     std::uint32_t reserved;

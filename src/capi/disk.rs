@@ -45,7 +45,7 @@ pub struct BhrDisk {
     /// In M, 0 .. 1e6. The disk begins here, but not inside the ISCO, or with BHR_DISK_PLUNGES not inside the
     /// horizon. Default 0: at the ISCO, or at the horizon.
     pub inner_radius: f64,
-    /// In M, greater than inner_radius, to 1e6. Default 17.
+    /// In M, 0 .. 1e6, greater than inner_radius. Default 17.
     pub outer_radius: f64,
     /// Kelvin at the ring that `reference` says, 500 .. 1e9. Default 3500.
     pub temperature: f64,
@@ -53,7 +53,7 @@ pub struct BhrDisk {
     pub opacity: f64,
     /// 0 .. 1e6: the luminance of that ring at rest. Default 0.6.
     pub brightness: f64,
-    /// Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default). Its mean is the smooth
+    /// Contrast of the structure that orbits with the matter, 0 .. 1; 0 is smooth. Default 1. Its mean is the smooth
     /// disk's light. bhr_set_time carries it along, forwards and backwards, at any time to 1e9 M and more.
     pub turbulence: f64,
     /// Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0.
@@ -62,9 +62,9 @@ pub struct BhrDisk {
     pub reference: BhrDiskReference,
     /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED. @since 0.2.0
     pub emission_law: BhrEmissionLaw,
-    /// 0 sharp .. 1, default 0.4: opacity and light fade to nothing over this share of the way from the inner edge
-    /// to the outer one, at its end, and near the ISCO. A disk that inner_radius cuts off outside the hottest ring
-    /// is sharp there. @since 0.2.0
+    /// 0 .. 1, default 0.4, 0 is sharp: opacity and light fade to nothing over this share of the way from the inner
+    /// edge to the outer one, at its end, and near the ISCO. A disk that inner_radius cuts off outside the hottest
+    /// ring is sharp there. @since 0.2.0
     pub edge_softness: f64,
 }
 

@@ -40,14 +40,14 @@ pub struct BhrFilm {
     pub tone_map: BhrToneMap,
     /// Stops, -20 .. 20. Default 0.
     pub exposure_ev: f64,
-    /// Glare, 0 off .. 1, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
+    /// Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
     /// at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
     /// images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
     /// was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the
     /// formula.
     pub bloom: f64,
     /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
-    /// frame heights, 0 off (default) .. 1. Alpha is left alone. With a region set, 8-bit images of light are
+    /// frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are
     /// INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md. @since 0.2.0
     pub beam_fwhm: f64,
     /// BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0

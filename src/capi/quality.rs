@@ -37,7 +37,7 @@ pub struct BhrQuality {
     pub struct_size: u32,
     /// BHR_METHOD_*. Default AUTO.
     pub method: BhrMethod,
-    /// Samples of each pixel, 1 (default) .. 256. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
+    /// Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
     /// they lie evenly in the pixel. Views other than BHR_VIEW_LIGHT take one. Pixels that an edge runs through get
     /// more rays in any case.
     pub samples_per_pixel: u32,
@@ -48,7 +48,7 @@ pub struct BhrQuality {
     /// ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers use their
     /// own.
     pub tolerance: f64,
-    /// Images of the disk to follow, 0 (the direct one only) .. 15. Default 3.
+    /// Images of the disk to follow, 0 .. 15; 0: the direct one only. Default 3.
     pub max_disk_order: u32,
     /// Reserved: 0.
     pub reserved: u32,

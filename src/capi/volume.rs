@@ -64,7 +64,7 @@ pub struct BhrVolume {
     /// In M, 1e-6 .. 1e4, or 0 (default): the ISCO of matter that moves as flags say. DISK, JET: the inner edge;
     /// OUTFLOW: the place where matter is at rest.
     pub inner_radius: f64,
-    /// In M, greater than inner_radius, to 1e4. There is nothing beyond it, whatever the shape, and nothing at all
+    /// In M, 0 .. 1e4, greater than inner_radius. There is nothing beyond it, whatever the shape, and nothing at all
     /// of a DISK or JET whose outer_radius is less than 0.9 times its inner edge, be that the ISCO. Default 17.
     pub outer_radius: f64,
     /// In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8.
@@ -94,7 +94,7 @@ pub struct BhrVolume {
     pub brightness: f64,
     /// KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1. Default 1.
     pub sub_keplerian: f64,
-    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall from rest at infinity.
+    /// KEPLERIAN: a share without a unit, 0 .. 1: 0 (default) is orbits, 1 free fall from rest at infinity.
     pub infall: f64,
     /// ANGULAR_MOMENTUM: 0 .. 1. Default 1.
     pub angular_momentum: f64,

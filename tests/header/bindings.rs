@@ -37,6 +37,10 @@ pub struct Member {
 
 /// The first sentence of a comment, without the place of bits that it begins with.
 fn sentence(documentation: &str) -> String {
+    // A number alone is a list's item to Doxygen.
+    if documentation.trim() == "0." {
+        return "Reserved: 0.".into();
+    }
     let plain = documentation.split_once(".flags: ").map_or(documentation, |(_, rest)| rest);
     let end = plain.find(". ").map_or(plain.len(), |end| end + 1);
     let sentence = plain[..end].split('\n').next().unwrap().trim();

@@ -156,3 +156,15 @@ pub fn run(command: &mut Command) -> String {
     );
     String::from_utf8(output.stdout).unwrap()
 }
+
+/// Compiles a C program and runs it with the library; its output.
+pub fn output_of(name: &str, program: &str) -> String {
+    let folder = scratch("bhr_json");
+    let (source, binary) = (folder.join(name).with_extension("c"), folder.join(name));
+    std::fs::write(&source, program).unwrap();
+    let library = library();
+    let mut command = compiler(false);
+    command.args(["-std=c11", "-I"]).arg(root().join("include")).arg(&source).arg(&library);
+    run(command.arg(format!("-Wl,-rpath,{}", library.parent().unwrap().display())).arg("-lm").arg("-o").arg(&binary));
+    run(&mut Command::new(binary))
+}

@@ -2,13 +2,12 @@
 //! include/bhr.json is the header for machines: made with it, and it says what a C compiler says. docs/bhr-json.md
 //! describes it.
 
-use crate::c_header::{HEADER, compiler, constants, functions, library, root, run, scratch, structs, table};
+use crate::c_header::{HEADER, compiler, constants, functions, output_of, root, run, scratch, structs, table};
 use crate::generated::{generate, types_of_constants};
 use crate::model::of_header;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::process::Command;
 
 pub fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_else(|| panic!("{value} is no text"))
@@ -24,18 +23,6 @@ fn names(entries: &[Value]) -> Vec<&str> {
 
 pub fn committed() -> Value {
     serde_json::from_str(&std::fs::read_to_string(root().join("include/bhr.json")).unwrap()).unwrap()
-}
-
-/// Compiles a C program and runs it with the library; its output.
-fn output_of(name: &str, program: &str) -> String {
-    let folder = scratch("bhr_json");
-    let (source, binary) = (folder.join(name).with_extension("c"), folder.join(name));
-    std::fs::write(&source, program).unwrap();
-    let library = library();
-    let mut command = compiler(false);
-    command.args(["-std=c11", "-I"]).arg(root().join("include")).arg(&source).arg(&library);
-    run(command.arg(format!("-Wl,-rpath,{}", library.parent().unwrap().display())).arg("-o").arg(&binary));
-    run(&mut Command::new(binary))
 }
 
 /// Structs that calls fill, and those that the host has to: their *_init functions clear them, and give no defaults.

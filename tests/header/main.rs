@@ -13,5 +13,6 @@ mod json;
 mod layouts;
 mod model;
 mod prose;
+mod ranges;
 mod symbols;
 mod third_party;

@@ -242,6 +242,47 @@ fn signature(code: &str, name: &str, types: &Types, opaque: &[String]) -> (Map<S
     (result, parameters.map(parameter).collect())
 }
 
+/// The ways in which comments name units, and the units.
+const UNITS: [(&str, &str); 9] = [
+    ("radians", "rad"),
+    ("in m,", "M"),
+    ("per m ", "1/M"),
+    ("kelvin", "K"),
+    ("scene lengths", "scene length"),
+    ("in frame heights", "frame height"),
+    ("in units of c", "c"),
+    ("stops", "EV"),
+    ("pixels", "pixel"),
+];
+
+/// The unit that a field's comment names first.
+fn unit(comment: &str) -> Option<&'static str> {
+    let comment = format!("{} ", comment.to_lowercase());
+    let found = UNITS.iter().filter_map(|(words, unit)| Some((comment.find(words)?, *unit)));
+    found.min_by_key(|(place, _)| *place).map(|(_, unit)| unit)
+}
+
+/// The least and the greatest number that a field's comment names, as `0 .. 1e6` or `within +-1e9`, both of them
+/// allowed.
+fn range(comment: &str) -> Option<Vec<f64>> {
+    let number = |text: &str| match text.trim_matches([',', ';', ':']).trim_end_matches('.') {
+        "2^20" => Some(f64::from(1 << 20)),
+        digits => digits.parse::<f64>().ok(),
+    };
+    let words: Vec<&str> = comment.split_whitespace().collect();
+    let between = words.windows(3).find_map(|three| match three {
+        [low, "..", high] => Some(vec![number(low)?, number(high)?]),
+        _ => None,
+    });
+    let about = || {
+        words.iter().find_map(|word| {
+            let bound = number(word.strip_prefix("+-")?)?;
+            Some(vec![-bound, bound])
+        })
+    };
+    between.or_else(about)
+}
+
 /// The fields of a struct with their places, and its size and alignment.
 fn fields(body: &str, types: &Types) -> (Vec<Value>, u64, u64) {
     let (mut found, mut end, mut widest) = (Vec::new(), 0_u64, 1);
@@ -262,6 +303,15 @@ fn fields(body: &str, types: &Types) -> (Vec<Value>, u64, u64) {
         let mut field = declarator.named();
         field.insert("offset".into(), offset.into());
         field.insert("size".into(), size.into());
+        if ["double", "uint32_t"].contains(&declarator.base.as_str()) {
+            for (name, value) in
+                [("unit", unit(&comment).map(Value::from)), ("range", range(&comment).map(Value::from))]
+            {
+                if let Some(value) = value {
+                    field.insert(name.into(), value);
+                }
+            }
+        }
         field.insert("since".into(), since(&comment).into());
         field.insert("documentation".into(), untagged(&comment).into());
         found.push(Value::Object(field));
