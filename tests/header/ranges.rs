@@ -79,7 +79,8 @@ fn values_beyond_a_range_are_refused_and_its_ends_are_taken() {
                 };
                 writeln!(
                     program,
-                    "{{ BhrStatus status; {} if (status >= 0) printf(\"{which}: beyond {end} is taken\\n\");\n{taken} }}",
+                    "{{ BhrStatus status;\n{} if (status >= 0) printf(\"{which}: beyond {end} is taken\\n\");\n\
+                     {taken} }}",
                     set(&beyond)
                 )
                 .unwrap();

@@ -5,6 +5,7 @@
 
 use super::colour::Primaries;
 use super::layer::{Attribute, Effort, Layer};
+use super::ordered::Ordered;
 use super::support::{io_error, probe};
 use crate::error::{Error, Result};
 use crate::image::memory::{ImageRef, PixelFormat};
@@ -99,7 +100,7 @@ fn write_channels(
     // The encoder holds a block's values, their bytes in another order, and what they are packed to.
     let line = size.0 as u64 * channels.iter().map(|c| c.image.format().channel_bytes() as u64).sum::<u64>();
     probe(4 * Compression::ZIP16.scan_lines_per_block() as u64 * line)?;
-    let written = block::write(file, std::iter::once(header).collect(), true, |meta, chunks| {
+    let written = block::write(Ordered::new(file), std::iter::once(header).collect(), true, |meta, chunks| {
         for (index, block) in meta.collect_ordered_block_data(|index| lines(&channels, index)) {
             // The format's bytes are little-endian: elsewhere the crate turns them round.
             let chunk = if cfg!(target_endian = "little") {
@@ -118,16 +119,16 @@ fn write_channels(
 /// high ones (of floats, even bytes and odd ones), as differences from the one before, deflated; where that is no
 /// shorter, as it is.
 fn packed(UncompressedBlock { index, data }: UncompressedBlock, effort: Effort) -> Chunk {
-    let mut apart: Vec<u8> = Vec::with_capacity(data.len());
-    apart.extend(data.iter().step_by(2).copied());
-    apart.extend(data.iter().skip(1).step_by(2).copied());
-    let mut before = 0_u8;
-    for (place, byte) in apart.iter_mut().enumerate() {
-        let this = *byte;
-        // 128 is no difference; the first byte is itself.
-        *byte = if place == 0 { this } else { this.wrapping_sub(before).wrapping_add(128) };
-        before = this;
+    // The last value of an odd number of bytes, which no format of values has, would be lost.
+    let pairs = data.chunks_exact(2);
+    let mut apart = vec![0_u8; data.len()];
+    let (low, high) = apart.split_at_mut(data.len() / 2);
+    for ((low, high), pair) in low.iter_mut().zip(high).zip(pairs) {
+        (*low, *high) = (pair[0], pair[1]);
     }
+    // 128 is no difference; the first byte is itself.
+    let differences = apart.array_windows().map(|[before, this]| this.wrapping_sub(*before).wrapping_add(128));
+    let apart = apart.iter().take(1).copied().chain(differences).collect::<Vec<u8>>();
     let mut space = vec![0; zlib_rs::compress_bound(apart.len())];
     let config = DeflateConfig::new(effort.0);
     let (deflated, done) = zlib_rs::compress_slice(&mut space, &apart, config);
@@ -150,15 +151,31 @@ fn text(words: &str) -> Text {
 /// The values of scan lines: row by row, in each row channel by channel.
 fn lines(channels: &[Channel<'_>], at: BlockIndex) -> Vec<u8> {
     let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = at;
-    let mut values = Vec::with_capacity(4 * width * height * channels.len());
+    let line = width * channels.iter().map(|channel| channel.image.format().channel_bytes()).sum::<usize>();
+    let mut values = vec![0; line * height];
+    let mut rest = &mut values[..];
     for y in top..top + height {
         for Channel { image, index, .. } in channels {
             let (pixel, value) = (image.format().bytes_per_pixel(), image.format().channel_bytes());
             let row = &image.row(y as u32)[left * pixel..(left + width) * pixel];
-            for pixel in row.chunks_exact(pixel) {
-                values.extend_from_slice(&pixel[index * value..(index + 1) * value]);
+            let (to, after) = rest.split_at_mut(width * value);
+            rest = after;
+            match (value, pixel) {
+                (2, 8) => gather::<2, 8>(row, *index, to),
+                (4, 16) => gather::<4, 16>(row, *index, to),
+                // One value a pixel.
+                _ => to.copy_from_slice(row),
             }
         }
     }
     values
+}
+
+/// The values of one channel, of V bytes, of pixels of P bytes.
+fn gather<const V: usize, const P: usize>(row: &[u8], index: usize, to: &mut [u8]) {
+    let (pixels, _) = row.as_chunks::<P>();
+    let (values, _) = to.as_chunks_mut::<V>();
+    for (value, pixel) in values.iter_mut().zip(pixels) {
+        value.copy_from_slice(&pixel[index * V..][..V]);
+    }
 }

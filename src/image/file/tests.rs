@@ -138,6 +138,12 @@ fn layers_keep_every_channel_and_attribute() {
         [("bhr.hole.spin".into(), Attribute::Number(0.1)), ("bhr.adapter".into(), Attribute::Text("a\u{e9}b".into()))];
     let path = folder.file("layers.exr");
     save_layers(&layers(), &attributes, Effort::default(), &path).unwrap();
+    // Files of one picture are equal: a hash map would have another order each time.
+    let first = fs::read(&path).unwrap();
+    for _ in 0..4 {
+        save_layers(&layers(), &attributes, Effort::default(), &path).unwrap();
+        assert!(fs::read(&path).unwrap() == first);
+    }
     let read = read_all_flat_layers_from_file(&path).unwrap();
     let [layer] = &read.layer_data[..] else { panic!("{} layers", read.layer_data.len()) };
     let found = |name: &str| {
