@@ -87,6 +87,9 @@ missing_packages_of_all() {
     missing golang-go go gofmt
     missing_packages_of_windows
     missing_packages_of_aarch64 vulkan
+    missing slurmctld slurmctld
+    missing slurmd slurmd
+    missing munge munged
 }
 
 # The Debian packages of what is missing, one a line.

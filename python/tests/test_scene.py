@@ -82,6 +82,26 @@ def test_what_moves_in_a_scene(ctx):
     assert ctx.time == 5.0
 
 
+def test_a_film(tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text("[hole]\nspin = { keys = [[0, 0], [1, 0.9]] }\n[render]\nwidth = 32\nheight = 18\nduration = 1")
+    told = []
+    out = tmp_path / "f.##.png"
+    files = bhr.render_film(scene, out, range(0, 24, 8), backend="cpu", progress=lambda n, path: told.append(n))
+    assert told == [0, 8, 16] and [file.name for file in files] == ["f.00.png", "f.08.png", "f.16.png"]
+    before = [file.stat().st_mtime_ns for file in files]
+    assert bhr.render_film(scene, out, [0, 8, 16], backend="cpu") == files
+    assert [file.stat().st_mtime_ns for file in files] == before
+    with bhr.Context("cpu") as ctx:
+        ctx.load(scene)
+        ctx.at(8 / 24)
+        assert ctx.spin == pytest.approx(0.3)
+        assert np.array_equal(ctx.render(32, 18).array, bhr.load(files[1]).array)
+    assert bhr.render_film(scene, tmp_path / "one.exr", [3], backend="cpu")[0].stat().st_size > 1000
+    with pytest.raises(ValueError, match="no #"):
+        bhr.render_film(scene, tmp_path / "f.png", backend="cpu")
+
+
 def test_nothing_instead_of_disk_sky_region(ctx):
     ctx.disk = ctx.sky = ctx.region = None
     assert ctx.disk is None and ctx.sky.flags == 0 and ctx.region is None

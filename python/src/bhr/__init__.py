@@ -44,6 +44,7 @@ from ._constants import (
 )
 from ._context import Context
 from ._ffi import ffi as _ffi
+from ._film import render_film
 from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
@@ -126,4 +127,5 @@ __all__ = [
     "interop",
     "load",
     "rays",
+    "render_film",
 ]
