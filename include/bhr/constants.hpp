@@ -176,7 +176,7 @@ enum class ColourMap : std::int32_t {
     /// The picture has the colours of the light.
     none = BHR_COLOUR_MAP_NONE,
     /// The map afmhot, in which the Event Horizon Telescope publishes its images, of the luminance after the tone map:
-    /// red 2 s, green 2 s - 1/2, blue 2 s - 1, each within 0 ..
+    /// red 2 s, green 2 s - 1/2, blue 2 s - 1, each within 0 .. 1, in sRGB code values.
     afmhot = BHR_COLOUR_MAP_AFMHOT,
 };
 
@@ -255,7 +255,8 @@ enum class OutputKind : std::int32_t {
     /// RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
     /// infinity).
     sky = BHR_OUTPUT_SKY,
-    /// R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 ..
+    /// R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
+    /// captured.
     transmission = BHR_OUTPUT_TRANSMISSION,
     /// RGBA32F: x, y, z of crossing number index, and its order, 0 for the direct image.
     position = BHR_OUTPUT_POSITION,
@@ -311,7 +312,7 @@ enum class MatrixFlags : std::uint32_t {
     row_major = BHR_MATRIX_ROW_MAJOR,
     /// Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal.
     y_down = BHR_MATRIX_Y_DOWN,
-    /// Depths lie in 0 ..
+    /// Depths lie in 0 .. 1, else in -1 .. 1 (OpenGL).
     zero_to_one = BHR_MATRIX_ZERO_TO_ONE,
     /// The near plane has the greatest depth, the far one the least.
     reversed = BHR_MATRIX_REVERSED,

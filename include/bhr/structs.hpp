@@ -61,17 +61,17 @@ struct Disk {
     std::uint32_t struct_size;
     /// Any of BHR_DISK_RETROGRADE | BHR_DISK_PLUNGES.
     DiskFlags flags;
-    /// In M, 0 ..
+    /// In M, 0 .. 1e6.
     double inner_radius;
-    /// In M, 0 ..
+    /// In M, 0 .. 1e6, greater than inner_radius.
     double outer_radius;
-    /// Kelvin at the ring that `reference` says, 500 ..
+    /// Kelvin at the ring that `reference` says, 500 .. 1e9.
     double temperature;
-    /// 0 ..
+    /// 0 .. 1.
     double opacity;
-    /// 0 ..
+    /// 0 .. 1e6: the luminance of that ring at rest.
     double brightness;
-    /// Contrast of the structure that orbits with the matter, 0 ..
+    /// Contrast of the structure that orbits with the matter, 0 .. 1; 0 is smooth.
     double turbulence;
     /// Selects the turbulence: the same seed always gives the same pattern.
     std::uint64_t seed;
@@ -79,7 +79,8 @@ struct Disk {
     DiskReference reference;
     /// BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED.
     EmissionLaw emission_law;
-    /// 0 ..
+    /// 0 .. 1, default 0.4, 0 is sharp: opacity and light fade to nothing over this share of the way from the inner
+    /// edge to the outer one, at its end, and near the ISCO.
     double edge_softness;
 
     Disk() noexcept { detail::defaults(*this, bhr_disk_init); }
@@ -97,45 +98,46 @@ struct Volume {
     VolumeShape shape;
     /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
     Flow flow;
-    /// In M, 1e-6 ..
+    /// In M, 1e-6 .. 1e4, or 0 (default): the ISCO of matter that moves as flags say.
     double inner_radius;
-    /// In M, 0 ..
+    /// In M, 0 .. 1e4, greater than inner_radius.
     double outer_radius;
-    /// In M, 0.1 ..
+    /// In M, 0.1 .. 1e4.
     double radius;
-    /// In M, 1e-3 ..
+    /// In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R.
     double width;
-    /// 0.01 ..
+    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius.
     double thickness;
-    /// JET: the wall's angle from the axis at `radius`, radians, 0.01 ..
+    /// JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5.
     double opening;
-    /// DISK, JET: 0 ..
+    /// DISK, JET: 0 .. 4.
     double slope;
-    /// Per M at density 1, 0 ..
+    /// Per M at density 1, 0 .. 1e6.
     double absorption;
-    /// Kelvin, 500 ..
+    /// Kelvin, 500 .. 1e9, at inner_radius (DISK, JET) or at radius (TORUS, HALO).
     double temperature;
-    /// 0 ..
+    /// 0 .. 2: the temperature goes as r^-temperature_slope.
     double temperature_slope;
-    /// POWER_LAW: -4 ..
+    /// POWER_LAW: -4 .. 4.
     double spectral_index;
     /// POWER_LAW: the colour of its light at every shift, linear Rec.
     Vector tint;
-    /// A factor on the light, 0 ..
+    /// A factor on the light, 0 .. 1e6, which changes neither its colour nor what is absorbed.
     double brightness;
-    /// KEPLERIAN: the share of the orbit's angular momentum, 0 ..
+    /// KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1.
     double sub_keplerian;
-    /// KEPLERIAN: a share without a unit, 0 ..
+    /// KEPLERIAN: a share without a unit, 0 .. 1: 0 (default) is orbits, 1 free fall from rest at infinity.
     double infall;
-    /// ANGULAR_MOMENTUM: 0 ..
+    /// ANGULAR_MOMENTUM: 0 .. 1.
     double angular_momentum;
-    /// OUTFLOW: the velocity far away in units of c, 0 ..
+    /// OUTFLOW: the velocity far away in units of c, 0 .. 0.995.
     double speed;
-    /// 0 ..
+    /// 0 .. 1: the contrast of structure that the matter carries along: a pattern P = e^(turbulence G) over its mean, G
+    /// being noise of mean 0 and about variance 1.
     double turbulence;
-    /// 0.5 ..
+    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments.
     double clumping;
-    /// 0 ..
+    /// 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter.
     double heating;
     /// Selects the structure: the same seed always gives the same one.
     std::uint64_t seed;
@@ -151,21 +153,21 @@ struct HotSpot {
     std::uint32_t struct_size;
     /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL.
     HotSpotFlags flags;
-    /// In M, 1 ..
+    /// In M, 1 .. 1000.
     double radius;
-    /// In M, 0.05 ..
+    /// In M, 0.05 .. radius / 4, and at least radius / 200.
     double size;
     /// The centre at scene time 0, radians within +-1e6.
     double azimuth;
-    /// Per M at the centre, 0 ..
+    /// Per M at the centre, 0 .. 1e6.
     double absorption;
-    /// Kelvin, 500 ..
+    /// Kelvin, 500 .. 1e9.
     double temperature;
-    /// Without THERMAL: -4 ..
+    /// Without THERMAL: -4 .. 4.
     double spectral_index;
     /// Without THERMAL: the colour of its light at every shift, linear Rec.
     Vector tint;
-    /// 0 ..
+    /// 0 .. 1e6, as BhrVolume.brightness.
     double brightness;
 
     HotSpot() noexcept { detail::defaults(*this, bhr_hot_spot_init); }
@@ -178,9 +180,9 @@ struct Sky {
     std::uint32_t struct_size;
     /// BHR_SKY_* bits; 0: black.
     SkyFlags flags;
-    /// A factor on the light of the stars, 0 ..
+    /// A factor on the light of the stars, 0 .. 1e6.
     double stars_brightness;
-    /// A factor on the light of the Milky Way and the map, 0 ..
+    /// A factor on the light of the Milky Way and the map, 0 .. 1e6.
     double map_brightness;
     /// Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole) to
     /// scene axes.
@@ -199,12 +201,13 @@ struct Film {
     std::uint32_t struct_size;
     /// BHR_TONE_MAP_*.
     ToneMap tone_map;
-    /// Stops, -20 ..
+    /// Stops, -20 .. 20.
     double exposure_ev;
-    /// Glare, 0 ..
+    /// Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
+    /// at every resolution.
     double bloom;
     /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
-    /// heights, 0 ..
+    /// heights, 0 .. 1, 0 off (default).
     double beam_fwhm;
     /// BHR_COLOUR_MAP_*.
     ColourMap colour_map;
@@ -221,11 +224,11 @@ struct PresetOptions {
     std::uint32_t struct_size;
     /// BHR_PRESET_MATTER_AUTO (default), _THIN, _DEEP.
     PresetMatter matter;
-    /// AUTO: the width of the frames that are to be rendered, in pixels, 1 ..
+    /// AUTO: the width of the frames that are to be rendered, in pixels, 1 .. 1048576; 0 means the default, 1920.
     std::uint32_t width;
-    /// AUTO: their height, in pixels, 1 ..
+    /// AUTO: their height, in pixels, 1 .. 1048576; 0 means the default, 1080.
     std::uint32_t height;
-    /// AUTO: the time that such a frame may take, in milliseconds, 0.001 ..
+    /// AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16.
     double frame_ms;
     /// AUTO: 1 forgets what was measured for the preset before; 0 (default) keeps it.
     std::uint32_t measure_anew;
@@ -243,19 +246,19 @@ struct Quality {
     std::uint32_t struct_size;
     /// BHR_METHOD_*.
     Method method;
-    /// Samples of each pixel, 1 ..
+    /// Samples of each pixel, 1 .. 256.
     std::uint32_t samples_per_pixel;
-    /// Steps of an integrated ray, 16 ..
+    /// Steps of an integrated ray, 16 .. 100000.
     std::uint32_t max_steps;
-    /// RK4: the step, 1e-3 ..
+    /// RK4: the step, 1e-3 .. 0.5, in Mino time scaled to the ray (docs/numerics.md); 0 means the default, 0.1.
     double step;
-    /// ADAPTIVE: the relative tolerance, 1e-14 ..
+    /// ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0: the default, 1e-10.
     double tolerance;
-    /// Images of the disk to follow, 0 ..
+    /// Images of the disk to follow, 0 .. 15; 0: the direct one only.
     std::uint32_t max_disk_order;
     /// Reserved: 0.
     std::uint32_t reserved;
-    /// Windows: traced size / window size, 0.1 ..
+    /// Windows: traced size / window size, 0.1 .. 1.
     double render_scale;
     /// BHR_VOLUME_RESOLUTION_*.
     VolumeResolution volume_resolution;

@@ -42,7 +42,9 @@ fn sentence(documentation: &str) -> String {
         return "Reserved: 0.".into();
     }
     let plain = documentation.split_once(".flags: ").map_or(documentation, |(_, rest)| rest);
-    let end = plain.find(". ").map_or(plain.len(), |end| end + 1);
+    // Two dots are those of a range.
+    let mut ends = plain.match_indices(". ").filter(|(at, _)| !plain[..*at].ends_with('.'));
+    let end = ends.next().map_or(plain.len(), |(at, _)| at + 1);
     let sentence = plain[..end].split('\n').next().unwrap().trim();
     let mut letters = sentence.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();

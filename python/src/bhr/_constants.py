@@ -179,7 +179,7 @@ class ColourMap(enum.IntEnum):
     #: The picture has the colours of the light.
     NONE = 0
     #: The map afmhot, in which the Event Horizon Telescope publishes its images, of the luminance after the tone map:
-    #: red 2 s, green 2 s - 1/2, blue 2 s - 1, each within 0 ..
+    #: red 2 s, green 2 s - 1/2, blue 2 s - 1, each within 0 .. 1, in sRGB code values.
     AFMHOT = 1
 
 
@@ -264,7 +264,8 @@ class OutputKind(enum.IntEnum):
     #: RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
     #: infinity).
     SKY = 2
-    #: R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 ..
+    #: R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
+    #: captured.
     TRANSMISSION = 3
     #: RGBA32F: x, y, z of crossing number index, and its order, 0 for the direct image.
     POSITION = 4
@@ -304,7 +305,7 @@ class MatrixFlags(enum.IntFlag):
     ROW_MAJOR = 1
     #: Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal.
     Y_DOWN = 2
-    #: Depths lie in 0 ..
+    #: Depths lie in 0 .. 1, else in -1 .. 1 (OpenGL).
     ZERO_TO_ONE = 4
     #: The near plane has the greatest depth, the far one the least.
     REVERSED = 8

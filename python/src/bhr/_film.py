@@ -25,7 +25,7 @@ def render_film(
     """Renders frames of a scene file to .png or .exr files (16-bit floats), and returns their paths. The last run of #
     in the name `out` becomes the frame's number. `frames`: their numbers, from 0; None: all that the scene asks for.
     A file is there whole or not at all; one that is there is passed over, unless `again` is set. `progress` is told
-    each frame's number and path when its file is there. The program `bhr render` does the same faster, beside others."""
+    each frame's number and path when its file is there. The program `bhr render` is faster, and shares frames."""
     pattern = os.fspath(out)
     folder, name = os.path.split(pattern)
     marks = list(re.finditer("#+", name))
