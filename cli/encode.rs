@@ -15,6 +15,9 @@ use std::thread::JoinHandle;
 /// The most bytes of pixels that wait to be written.
 const MOST_BYTES: usize = 4 << 30;
 
+/// Larger frames are a slip, and no machine's memory.
+const MOST_OF_A_FRAME: usize = 64 << 30;
+
 /// Pixels of a frame, aligned to every format's channels.
 pub type Pixels = Vec<u32>;
 
@@ -91,22 +94,24 @@ impl Encoders {
             return Ok(pixels);
         }
         if self.buffers < self.most_buffers {
-            let mut pixels = Pixels::new();
-            let count = self.frame_bytes.div_ceil(4);
-            match (pixels.try_reserve_exact(count), self.buffers) {
-                (Ok(()), _) => {
-                    pixels.resize(count, 0);
+            let made = match self.frame_bytes {
+                // Zeros take no memory until they are written, so that a system may promise any number of them.
+                0..=MOST_OF_A_FRAME => bytemuck::allocation::try_zeroed_vec(self.frame_bytes.div_ceil(4)),
+                _ => Err(()),
+            };
+            match (made, self.buffers) {
+                (Ok(pixels), _) => {
                     self.buffers += 1;
                     return Ok(pixels);
                 }
-                (Err(_), 0) => {
+                (Err(()), 0) => {
                     return Err(no_memory(format!(
                         "there are no {} bytes for the pixels of a frame",
                         self.frame_bytes
                     )));
                 }
                 // The buffers that there are have to do.
-                (Err(_), there) => self.most_buffers = there,
+                (Err(()), there) => self.most_buffers = there,
             }
         }
         // The threads give pixels back even where they could not write them, and end with the orders only.

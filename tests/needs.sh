@@ -87,6 +87,8 @@ missing_packages_of_all() {
     missing golang-go go gofmt
     missing_packages_of_windows
     missing_packages_of_aarch64 vulkan
+    missing openmpi-bin mpirun
+    missing libopenmpi-dev mpicc
     missing slurmctld slurmctld
     missing slurmd slurmd
     missing munge munged
@@ -109,8 +111,6 @@ missing_packages() {
     missing luajit luajit
     luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing doxygen doxygen
-    missing openmpi-bin mpirun
-    missing libopenmpi-dev mpicc
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }
