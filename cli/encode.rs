@@ -13,10 +13,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 /// The most bytes of pixels that wait to be written.
-const MOST_BYTES: usize = 4 << 30;
+const MOST_BYTES: u64 = 4 << 30;
 
 /// Larger frames are a slip, and no machine's memory.
-const MOST_OF_A_FRAME: usize = 64 << 30;
+const MOST_OF_A_FRAME: u64 = 64 << 30;
 
 /// Pixels of a frame, aligned to every format's channels.
 pub type Pixels = Vec<u32>;
@@ -73,7 +73,8 @@ impl Encoders {
     pub fn new(threads: usize, frames: usize, frame_bytes: usize) -> Result<Self, Ending> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = (if threads == 0 { cores } else { threads }).clamp(1, frames.max(1));
-        let most_buffers = (MOST_BYTES / frame_bytes.max(1)).clamp(1, threads + 2).min(frames.max(1));
+        let that_fit = usize::try_from(MOST_BYTES / frame_bytes.max(1) as u64).unwrap_or(usize::MAX);
+        let most_buffers = that_fit.clamp(1, threads + 2).min(frames.max(1));
         let (give_back, free) = channel();
         let (orders, taken) = sync_channel::<Frame>(most_buffers);
         let taken = Arc::new(Mutex::new(taken));
@@ -94,7 +95,7 @@ impl Encoders {
             return Ok(pixels);
         }
         if self.buffers < self.most_buffers {
-            let made = match self.frame_bytes {
+            let made = match self.frame_bytes as u64 {
                 // Zeros take no memory until they are written, so that a system may promise any number of them.
                 0..=MOST_OF_A_FRAME => bytemuck::allocation::try_zeroed_vec(self.frame_bytes.div_ceil(4)),
                 _ => Err(()),
