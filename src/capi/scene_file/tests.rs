@@ -324,6 +324,21 @@ fn numbers_that_mean_nothing_come_back() {
     }
 }
 
+/// The samples of docs/scenes.md are scenes.
+#[test]
+fn samples_of_the_page_are_scenes() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenes.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let samples = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect::<Vec<_>>();
+    assert!(samples.len() >= 3);
+    for sample in samples {
+        let file = parsed(sample);
+        for seconds in [0.0, 1.0, 5.0, 20.0] {
+            scene_at(&file, seconds).observer().unwrap_or_else(|error| panic!("{error}\n{sample}"));
+        }
+    }
+}
+
 #[test]
 fn hostile_texts_take_little() {
     let cuts = (0..100_000).map(|i| format!("{{at={i},camera={{}}}},")).collect::<String>();
