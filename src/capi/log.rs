@@ -336,22 +336,24 @@ mod tests {
     fn closing_waits_for_a_callback_that_runs() {
         unsafe extern "C" fn slow(user: *mut c_void, _: BhrLogLevel, message: *const c_char) {
             // SAFETY: as in `hear`.
-            let (done, message) = unsafe { (&*user.cast::<Mutex<bool>>(), CStr::from_ptr(message)) };
+            let (state, message) = unsafe { (&*user.cast::<Mutex<&str>>(), CStr::from_ptr(message)) };
             if message == c"slow" {
+                *state.lock().unwrap() = "begun";
                 std::thread::sleep(Duration::from_millis(100));
-                *done.lock().unwrap() = true;
+                *state.lock().unwrap() = "done";
             }
         }
-        let done = Mutex::new(false);
-        let registered = Registered::new(LevelFilter::Error, slow, (&raw const done).cast_mut().cast());
+        let state = Mutex::new("");
+        let registered = Registered::new(LevelFilter::Error, slow, (&raw const state).cast_mut().cast());
         let sink = registered.sink();
         std::thread::scope(|scope| {
             scope.spawn(|| sink.deliver(Level::Error, c"slow"));
-            while sink.gate.running() == 0 {
+            // Another test's message may be the one that runs: this one's has to have begun.
+            while *state.lock().unwrap() != "begun" {
                 std::thread::yield_now();
             }
             drop(registered);
-            assert!(*done.lock().unwrap());
+            assert_eq!(*state.lock().unwrap(), "done");
         });
         sink.deliver(Level::Error, c"slow");
         assert_eq!(sink.gate.running(), 0);
