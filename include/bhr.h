@@ -1160,7 +1160,16 @@ BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *reg
  * UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_load(BhrContext *context, const char *text, size_t size);
 
-/** Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder.
+/** Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder. A struct
+ * is a table, a field a line, a constant the end of its name; what changes with time has keys of [seconds, value]:
+ * ```toml
+ * preset = "cinematic"
+ * [hole]
+ * spin = { keys = [[0, 0.0], [10, 0.9]] }
+ * [camera]
+ * motion = "static"
+ * orbit = { distance = 20, azimuth = 0, elevation = "8 deg" }
+ * ```
  * Errors: those of bhr_scene_load; IO for a file that is not there, not readable, not UTF-8 or larger than 4 MiB.
  * @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_load_file(BhrContext *context, const char *path);

@@ -91,7 +91,16 @@ pub unsafe extern "C" fn bhr_scene_load(context: *mut BhrContext, text: *const c
     }
 }
 
-/// Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder.
+/// Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder. A struct
+/// is a table, a field a line, a constant the end of its name; what changes with time has keys of [seconds, value]:
+/// ```toml
+/// preset = "cinematic"
+/// [hole]
+/// spin = { keys = [[0, 0.0], [10, 0.9]] }
+/// [camera]
+/// motion = "static"
+/// orbit = { distance = 20, azimuth = 0, elevation = "8 deg" }
+/// ```
 /// Errors: those of bhr_scene_load; IO for a file that is not there, not readable, not UTF-8 or larger than 4 MiB.
 /// @since 0.2.0
 #[unsafe(no_mangle)]
