@@ -2,11 +2,11 @@
 //! How far the program is, as people and farms read it: a bar on a terminal, lines of text, JSON, or OpenJD's. Knows no
 //! scene.
 
+use crate::encode::{Done, Encoders};
 use crate::ending::Ending;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
-use std::path::Path;
 
 pub enum Progress {
     None,
@@ -54,8 +54,25 @@ impl Progress {
         })
     }
 
+    pub fn frames(&mut self, done: &[Done]) {
+        done.iter().for_each(|done| self.frame(done));
+    }
+
+    /// Waits for all frames that were ordered. Frames that are rendered are written, whatever ended the rest; the
+    /// first mistake is returned.
+    pub fn finish(&mut self, encoders: Encoders, mut ended: Result<(), Ending>) -> Result<(), Ending> {
+        for written in encoders.finish() {
+            match written {
+                Ok(done) => self.frames(&done),
+                Err(ending) => ended = ended.and(Err(ending)),
+            }
+        }
+        ended
+    }
+
     /// A frame's file is there: from this run after so many seconds, or from before.
-    pub fn frame(&mut self, frame: u32, file: &Path, seconds: Option<f64>) {
+    pub fn frame(&mut self, done: &Done) {
+        let Done { frame, file, seconds } = done;
         let took = seconds.map_or("was there".into(), |seconds| format!("{seconds:.2} s"));
         let file = file.display();
         match self {
