@@ -52,16 +52,6 @@ void scene_begin(Scene *scene, const SceneOptions *options) {
     scene->camera.fov_y = options->fov * PI / 180.0;
 }
 
-BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
-    BhrStatus status = scene_defaults(scene);
-    if (status < 0) {
-        return status;
-    }
-    scene_begin(scene, options);
-    return bhr_camera_orbit(&scene->camera, options->distance * options->mass, options->azimuth * PI / 180.0,
-                            options->elevation * PI / 180.0);
-}
-
 /* Disk, sky, film and effects, as the context has them. */
 static BhrStatus read_look(Scene *scene, BhrContext *context) {
     int32_t   present;
@@ -75,11 +65,6 @@ static BhrStatus read_look(Scene *scene, BhrContext *context) {
         status = bhr_get_film(context, &scene->film);
     }
     return status >= 0 ? bhr_get_effects(context, &scene->effects) : status;
-}
-
-BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) {
-    const BhrStatus status = bhr_set_preset(context, preset);
-    return status >= 0 ? read_look(scene, context) : status;
 }
 
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
