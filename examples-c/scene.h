@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* scene.h -- everything that a frame of viewer or film shows, as plain values that are copied to try a change
+/* scene.h -- everything that a frame of viewer or render_frame shows, as plain values that are copied to try a change
  * and thrown away when bhr refuses it. Knows no window and no input. */
 #ifndef EXAMPLES_SCENE_H
 #define EXAMPLES_SCENE_H
