@@ -76,6 +76,39 @@ BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset pre
     return status >= 0 ? read_look(scene, context) : status;
 }
 
+static BhrStatus read_matter(Scene *scene, BhrContext *context) {
+    BhrStatus status = bhr_get_volumes(context, scene->volumes, sizeof *scene->volumes, BHR_MAX_VOLUMES,
+                                       &scene->volume_count);
+    if (status >= 0) {
+        status = bhr_get_hot_spots(context, scene->hot_spots, sizeof *scene->hot_spots, BHR_MAX_HOT_SPOTS,
+                                   &scene->hot_spot_count);
+    }
+    return status;
+}
+
+BhrStatus scene_read(Scene *scene, BhrContext *context) {
+    BhrStatus status = scene_defaults(scene); /* structs that are read into say their size */
+    if (status >= 0) {
+        status = bhr_get_hole(context, &scene->mass, &scene->spin, scene->axis);
+    }
+    if (status >= 0) {
+        status = bhr_get_time(context, &scene->time);
+    }
+    if (status >= 0) {
+        status = bhr_get_camera(context, &scene->camera);
+    }
+    if (status >= 0) {
+        status = read_matter(scene, context);
+    }
+    if (status >= 0) {
+        status = read_look(scene, context);
+    }
+    if (status >= 0) {
+        status = bhr_get_view(context, &scene->view);
+    }
+    return status >= 0 ? bhr_get_quality(context, &scene->quality) : status;
+}
+
 BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
     BhrStatus status = bhr_set_mass(context, scene->mass);
     if (status >= 0) {

@@ -50,6 +50,9 @@ void scene_begin(Scene *scene, const SceneOptions *options);
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                 BhrPresetMatter *out_matter);
 
+/* All of it as the context has it. Errors: as the library's. */
+BhrStatus scene_read(Scene *scene, BhrContext *context);
+
 /* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
 BhrStatus scene_apply(const Scene *scene, BhrContext *context);
 
