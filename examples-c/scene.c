@@ -77,8 +77,8 @@ BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset pre
 }
 
 static BhrStatus read_matter(Scene *scene, BhrContext *context) {
-    BhrStatus status = bhr_get_volumes(context, scene->volumes, sizeof *scene->volumes, BHR_MAX_VOLUMES,
-                                       &scene->volume_count);
+    BhrStatus status =
+        bhr_get_volumes(context, scene->volumes, sizeof *scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
     if (status >= 0) {
         status = bhr_get_hot_spots(context, scene->hot_spots, sizeof *scene->hot_spots, BHR_MAX_HOT_SPOTS,
                                    &scene->hot_spot_count);

@@ -37,8 +37,8 @@ int scene_file_path(const char *folder, const char *name, char *path) {
             return 1;
         }
     }
-    fprintf(stderr, "the scene %s.toml was found neither in %s/%s nor in %s/%s; say where by --scenes FOLDER\n", name,
-            own, PLACES[0], own, PLACES[1]);
+    fprintf(stderr, "the scene %s.toml was found neither in %s/%s nor in %s/%s; an option (--help) can name another\n",
+            name, own, PLACES[0], own, PLACES[1]);
     return 0;
 }
 
