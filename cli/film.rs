@@ -36,7 +36,7 @@ fn lock(writer: &Mutex<Writer>) -> MutexGuard<'_, Writer> {
 impl Film<'_> {
     /// Renders the frames of `list` into one video, in this order. Errors: the first mistake; of a video that is not
     /// whole all pieces stay that were.
-    pub fn render(&self, list: &[u32], renderer: &mut Renderer, progress: &mut Progress) -> Result<(), Ending> {
+    pub fn render(&self, list: &[u32], renderer: &mut Renderer, progress: &Progress) -> Result<(), Ending> {
         let whole = self.names.of(0);
         let first = *list.first().ok_or_else(|| Ending::usage("--frames: a video needs one frame at least"))?;
         let _claim = self.claim(&whole)?;
@@ -103,7 +103,7 @@ impl Film<'_> {
         writer: &Arc<Mutex<Writer>>,
         encoders: &mut Encoders,
         renderer: &mut Renderer,
-        progress: &mut Progress,
+        progress: &Progress,
     ) -> Result<(), Ending> {
         let mut lost = 0;
         let begin = Instant::now();

@@ -39,7 +39,7 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn device() -> [Arg; 2] {
     [
         option("backend", "NAME", "auto, cpu, vulkan, metal, d3d12 or gl").default_value("auto"),
-        option("adapter", "N", "The adapter of this number in `bhr adapters`").value_parser(value_parser!(u32)),
+        option("adapter", "N", "The adapter of this number in `bhr adapters`; render: also 0,1 or all GPUs"),
     ]
 }
 

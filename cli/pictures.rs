@@ -14,7 +14,11 @@ use crate::signals::Signals;
 use bhr::image::{Alpha, Attribute, Effort, Layer, save, save_layers};
 use bhr::renderer::Renderer;
 use bhr::scene_file::parameters;
+use std::collections::VecDeque;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long other programs' frames are waited for before they are looked at again.
@@ -26,6 +30,15 @@ pub struct Pictures<'a> {
     pub again: bool,
     pub effort: Effort,
     pub signals: &'a Signals,
+    /// Set where one of several renderers has failed, for the others to end.
+    pub failed: AtomicBool,
+}
+
+/// The frames that no renderer has taken.
+type Left = Mutex<VecDeque<u32>>;
+
+fn lock(left: &Left) -> MutexGuard<'_, VecDeque<u32>> {
+    left.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A picture that is to be written.
@@ -40,64 +53,92 @@ struct Picture {
 }
 
 impl Pictures<'_> {
-    /// Renders frames; on as many threads as `encoders` they are written. Errors: the first mistake; frames that were
-    /// rendered before it are written.
+    /// Renders frames by several renderers, which share the list as programs would; on as many threads as `encoders`
+    /// they are written. Errors: the first mistake; frames that were rendered before it are written.
     pub fn render(
         &self,
-        list: Vec<u32>,
+        list: &[u32],
         encoders: usize,
+        renderers: &mut [Renderer],
+        progress: &Progress,
+    ) -> Result<(), Ending> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let encoders = (if encoders == 0 { cores } else { encoders }).div_ceil(renderers.len().max(1));
+        let left = &Mutex::new(list.iter().copied().collect::<VecDeque<_>>());
+        std::thread::scope(|scope| {
+            let threads = renderers.iter_mut().map(|renderer| {
+                scope.spawn(move || {
+                    let result = self.render_by(renderer, left, encoders, progress);
+                    self.failed.fetch_or(result.is_err(), Ordering::Relaxed);
+                    result
+                })
+            });
+            let threads = threads.collect::<Vec<_>>();
+            let ended = threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
+            ended.fold(Ok(()), Result::and)
+        })
+    }
+
+    fn render_by(
+        &self,
         renderer: &mut Renderer,
-        progress: &mut Progress,
+        left: &Left,
+        encoders: usize,
+        progress: &Progress,
     ) -> Result<(), Ending> {
         let (_, bytes) = self.order.places()?;
-        let mut encoders = Encoders::new(encoders, list.len(), bytes)?;
-        let ended = self.render_all(list, &mut encoders, renderer, progress);
+        let mut encoders = Encoders::new(encoders, lock(left).len(), bytes)?;
+        let ended = self.render_all(left, &mut encoders, renderer, progress);
         progress.finish(encoders, ended)
     }
 
     fn render_all(
         &self,
-        list: Vec<u32>,
+        left: &Left,
         encoders: &mut Encoders,
         renderer: &mut Renderer,
-        progress: &mut Progress,
+        progress: &Progress,
     ) -> Result<(), Ending> {
         let mut lost = 0;
         let mut manifest = Manifest::read(&self.names.manifest());
-        let mut left = list;
-        while !left.is_empty() {
-            manifest.refresh();
-            let mut others = Vec::new();
-            for frame in left {
-                self.signals.check()?;
-                for written in encoders.written() {
-                    progress.frames(&written?);
-                }
-                let file = self.names.of(frame);
-                if self.is_there(frame, &file, &manifest) {
-                    progress.frame(&Done { frame, file, seconds: None });
-                    continue;
-                }
-                let Some(claim) = Claim::on(&file)? else {
-                    others.push(frame);
-                    continue;
-                };
-                // Another program may have finished the frame between the two questions.
-                manifest.refresh();
-                if self.is_there(frame, &file, &manifest) {
-                    progress.frame(&Done { frame, file, seconds: None });
-                    continue;
-                }
-                let made = self.frame(frame, file, claim, encoders, renderer, &mut lost)?;
-                encoders.order(made)?;
+        // Frames that other programs are making.
+        let mut others = Vec::new();
+        loop {
+            self.signals.check()?;
+            if self.failed.load(Ordering::Relaxed) {
+                return Ok(());
             }
-            // The rest is being made by other programs: it is there in a while, or they are gone.
-            left = others;
-            if !left.is_empty() {
+            for written in encoders.written() {
+                progress.frames(&written?);
+            }
+            let Some(frame) = lock(left).pop_front() else {
+                if others.is_empty() {
+                    return Ok(());
+                }
+                // They are there in a while, or their programs are gone.
                 std::thread::sleep(PATIENCE);
+                manifest.refresh();
+                lock(left).extend(others.drain(..));
+                continue;
+            };
+            let file = self.names.of(frame);
+            if self.is_there(frame, &file, &manifest) {
+                progress.frame(&Done { frame, file, seconds: None });
+                continue;
             }
+            let Some(claim) = Claim::on(&file)? else {
+                others.push(frame);
+                continue;
+            };
+            // Another program may have finished the frame between the two questions.
+            manifest.refresh();
+            if self.is_there(frame, &file, &manifest) {
+                progress.frame(&Done { frame, file, seconds: None });
+                continue;
+            }
+            let made = self.frame(frame, file, claim, encoders, renderer, &mut lost)?;
+            encoders.order(made)?;
         }
-        Ok(())
     }
 
     /// Whether a frame's file is there, whole, and of this scene as far as that is known. A tile that nobody has noted

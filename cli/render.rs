@@ -13,6 +13,7 @@ use bhr::image::{Effort, Layout};
 use bhr::renderer::Renderer;
 use clap::ArgMatches;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Renders the frames that arguments ask for.
@@ -29,25 +30,29 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         std::fs::create_dir_all(folder).map_err(|error| Ending::io(folder, error))?;
     }
     let kind = given.get_one::<String>("progress").map_or("auto", String::as_str);
-    let mut progress = Progress::new(kind, list.len() as u64)?;
+    let progress = Progress::new(kind, list.len() as u64)?;
     let signals = Signals::listen();
-    let mut renderer = open::renderer(given)?;
+    let mut renderers = open::renderers(given)?;
+    let count = renderers.len();
+    let first = renderers.first_mut().ok_or_else(|| Ending::usage("no --adapter"))?;
     if given.get_flag("dry-run") {
-        return dry_run(&order, &list, &mut renderer, &signals);
+        return dry_run(&order, &list, first, count, &signals);
     }
     let (again, signals) = (given.get_flag("again"), &signals);
     let result = match &order.codec {
+        Some(_) if count > 1 => Err(Ending::usage("--adapter: a video is made on one")),
         Some(codec) => {
             let ffmpeg = given.get_one::<PathBuf>("ffmpeg").cloned().unwrap_or_else(|| "ffmpeg".into());
             let keyframes = given.get_one::<u32>("keyframes").copied();
             let film = Film { order: &order, codec, names: &names, again, ffmpeg, keyframes, signals };
-            film.render(&list, &mut renderer, &mut progress)
+            film.render(&list, first, &progress)
         }
         None => {
             let encoders = given.get_one::<u32>("encoders").copied().unwrap_or(0) as usize;
             let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
-            let pictures = Pictures { order: &order, names: &names, again, effort, signals };
-            pictures.render(list, encoders, &mut renderer, &mut progress)
+            let failed = AtomicBool::new(false);
+            let pictures = Pictures { order: &order, names: &names, again, effort, signals, failed };
+            pictures.render(&list, encoders, &mut renderers, &progress)
         }
     };
     progress.end();
@@ -58,7 +63,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
 const TRIED_PIXELS: f64 = 320.0 * 180.0;
 
 /// Renders the first, the middle and the last frame small, and says what all of them take.
-fn dry_run(order: &Order, list: &[u32], renderer: &mut Renderer, signals: &Signals) -> Result<(), Ending> {
+fn dry_run(
+    order: &Order,
+    list: &[u32],
+    renderer: &mut Renderer,
+    renderers: usize,
+    signals: &Signals,
+) -> Result<(), Ending> {
     let (layout, eye) = (order.layout(), order.eye_layout());
     let pixels = f64::from(eye.width) * f64::from(eye.height);
     let shrink = (TRIED_PIXELS / pixels).sqrt().min(1.0);
@@ -82,13 +93,14 @@ fn dry_run(order: &Order, list: &[u32], renderer: &mut Renderer, signals: &Signa
     let (_, whole) = order.places()?;
     let adapter = renderer.adapter();
     say(&format!(
-        "{} frames of {} x {} on {} ({}): about {:.0} s, if each takes {scale:.1} times what {} x {} took, {:.3} s",
+        "{} frames of {} x {} on {renderers} x {} ({}): about {:.0} s, if each takes {scale:.1} times what {} x {} \
+         took, {:.3} s",
         list.len(),
         layout.width,
         layout.height,
         adapter.name,
         adapter.backend,
-        mean * scale * list.len() as f64,
+        mean * scale * list.len() as f64 / renderers.max(1) as f64,
         small.width,
         small.height,
         mean,
