@@ -148,6 +148,12 @@ fn command() -> Command {
                 )
                 .arg(option("out", "FILE", "A .png or .exr file").required(true).value_parser(value_parser!(PathBuf))),
         )
+        .subcommand(
+            Command::new("man")
+                .hide(true)
+                .about("Writes the man pages into a folder, for packages")
+                .arg(Arg::new("folder").required(true).value_name("FOLDER").value_parser(value_parser!(PathBuf))),
+        )
 }
 
 fn run(matches: &ArgMatches) -> Result<(), Ending> {
@@ -158,8 +164,15 @@ fn run(matches: &ArgMatches) -> Result<(), Ending> {
         Some(("adapters", _)) => look::adapters(),
         Some(("trace", given)) => look::trace(given),
         Some(("join", given)) => join::run(given),
+        Some(("man", given)) => man(given),
         _ => Err(Ending::usage("no command")),
     }
+}
+
+/// Writes a page for the program, and one for each of its commands.
+fn man(given: &ArgMatches) -> Result<(), Ending> {
+    let folder = given.get_one::<PathBuf>("folder").ok_or_else(|| Ending::usage("no folder"))?;
+    clap_mangen::generate_to(command(), folder).map_err(|error| Ending::io(folder, error))
 }
 
 /// The most threads that write files.

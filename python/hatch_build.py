@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of bhr.h and of
-bhr_interop.h.
+bhr_interop.h; and the program bhr, which pip puts where commands are.
 
-The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. For another
-machine than this one BHR_PLATFORM says the wheel's platform (build-wheel --platform does). hatchling was chosen over
+The environment variable BHR_LIBRARY names a built library, BHR_PROGRAM a built program, without which the wheel has
+none; without either, cargo builds both for release. For another machine than this one BHR_PLATFORM says the wheel's
+platform (build-wheel --platform does). hatchling was chosen over
 maturin because it takes a library that is already there, built by whatever cross-compiler, and because
 maturin would need cbindgen a second time for what include/bhr.h already says.
 """
@@ -76,10 +77,22 @@ def library(root: Path, name: str) -> Path:
     if given:
         path = Path(given).resolve()
     else:
-        subprocess.run(["cargo", "build", "--release", "--lib", "--locked"], cwd=root, check=True)
+        command = ["cargo", "build", "--release", "--lib", "--features", "cli", "--bin", "bhr", "--locked"]
+        subprocess.run(command, cwd=root, check=True)
         path = root / os.environ.get("CARGO_TARGET_DIR", "target") / "release" / name
     if not path.is_file():
         raise FileNotFoundError(f"the library that the wheel is to hold is not there: {path}")
+    return path
+
+
+def program(library: Path) -> Path | None:
+    """The program that goes into the wheel: the one that is named, or that was built with the library."""
+    given = os.environ.get("BHR_PROGRAM")
+    if given is None and os.environ.get("BHR_LIBRARY"):
+        return None
+    path = Path(given).resolve() if given else library.with_name("bhr.exe" if sys.platform == "win32" else "bhr")
+    if not path.is_file():
+        raise FileNotFoundError(f"the program that the wheel is to hold is not there: {path}")
     return path
 
 
@@ -106,6 +119,11 @@ class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         build_data["tag"] = f"py3-none-{suffix}"
         build_data["force_include"][str(module)] = "bhr/_ffi.py"
         build_data["force_include"][str(file)] = f"bhr/{library_file(system)}"
+        command = program(file)
+        if command is not None:
+            if suffix in SYSTEMS and platform_of(command) != suffix:
+                raise ValueError(f"{command} is a program for {platform_of(command)}, not for {suffix}")
+            build_data["shared_scripts"][str(command)] = "bhr.exe" if system == "win32" else "bhr"
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
         self.scratch.cleanup()

@@ -118,7 +118,8 @@ build_library() {
     [ -z "${BHR_TESTS_BUILT:-}" ] || return 0
     own_target_folder || return 1
     cargo_test --no-run --test reference || return 1
-    ! runs_all || cargo build --release --lib --locked --manifest-path "$root/Cargo.toml"
+    ! runs_all ||
+        cargo build --release --lib --features cli --bin bhr --locked --manifest-path "$root/Cargo.toml"
 }
 
 # compile_c PROGRAM SOURCES AND FLAGS...: a C program that links $library. The runpath, unlike an rpath, comes after

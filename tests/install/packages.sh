@@ -55,7 +55,10 @@ man_pages() {
         [ ! -s "$scratch/warnings" ] || { cat "$scratch/warnings" && return 1; }
         [[ $page == *.3.gz ]] || grep -q -e '--help' "$scratch/page" || return 1
     done
-    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 7 ] || return 1
+    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 14 ] || return 1
+    # The program's pages are by clap, which names --help in each.
+    [ -s "$scratch/unpacked/usr/share/man/man1/bhr-render.1.gz" ] &&
+        [[ $("$scratch/unpacked/usr/bin/bhr" --version) == "bhr $(version)" ]] || return 1
     # Scene files are where the programs look for them, and bhr.json is in the other package.
     [ -s "$scratch/unpacked/usr/share/bhr/scenes/cinematic.toml" ] && [ -s "$scratch/unpacked/usr/share/bhr/bhr.json" ]
 }
@@ -68,6 +71,7 @@ tarball() {
     (cd "$scratch/untarred" && sha256sum --quiet -c SHA256SUMS) || return 1
     ! grep -rlF -e "$root" -e "$HOME/.cargo" -- "$scratch/untarred" || return 1
     prefix=$scratch/untarred
+    [[ $("$prefix/bin/bhr" --version) == "bhr $(version)" ]] && [ -s "$prefix/share/man/man1/bhr.1" ] || return 1
     symbols && by_pkg_config && by_find_package
 }
 
