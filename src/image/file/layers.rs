@@ -10,9 +10,9 @@ use super::support::{io_error, probe};
 use crate::error::{Error, Result};
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::exr::block;
+use ::exr::block::BlockIndex;
 use ::exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use ::exr::block::writer::ChunksWriter;
-use ::exr::block::{BlockIndex, UncompressedBlock};
 use ::exr::compression::Compression;
 use ::exr::math::Vec2;
 use ::exr::meta::BlockDescription;
@@ -101,45 +101,54 @@ fn write_channels(
     let line = size.0 as u64 * channels.iter().map(|c| c.image.format().channel_bytes() as u64).sum::<u64>();
     probe(4 * Compression::ZIP16.scan_lines_per_block() as u64 * line)?;
     let written = block::write(Ordered::new(file), std::iter::once(header).collect(), true, |meta, chunks| {
-        for (index, block) in meta.collect_ordered_block_data(|index| lines(&channels, index)) {
-            // The format's bytes are little-endian: elsewhere the crate turns them round.
-            let chunk = if cfg!(target_endian = "little") {
-                packed(block, effort)
-            } else {
-                block.compress_to_chunk(&meta.headers)?
-            };
-            chunks.write_chunk(index, chunk)?;
+        let mut space = Space::default();
+        for (index, at) in meta.enumerate_ordered_header_block_indices() {
+            chunks.write_chunk(index, space.packed(&channels, at, effort))?;
         }
         Ok(())
     });
     written.map_err(io_error)
 }
 
-/// A block as ZIP has it (OpenEXR, "Technical Introduction": Data Compression): the low bytes of all values, then the
-/// high ones (of floats, even bytes and odd ones), as differences from the one before, deflated; where that is no
-/// shorter, as it is.
-fn packed(UncompressedBlock { index, data }: UncompressedBlock, effort: Effort) -> Chunk {
-    // The last value of an odd number of bytes, which no format of values has, would be lost.
-    let pairs = data.chunks_exact(2);
-    let mut apart = vec![0_u8; data.len()];
-    let (low, high) = apart.split_at_mut(data.len() / 2);
-    for ((low, high), pair) in low.iter_mut().zip(high).zip(pairs) {
-        (*low, *high) = (pair[0], pair[1]);
+/// The memory for one block after the other.
+#[derive(Default)]
+struct Space {
+    apart: Vec<u8>,
+    differences: Vec<u8>,
+    deflated: Vec<u8>,
+}
+
+impl Space {
+    /// A block as ZIP has it (OpenEXR, "Technical Introduction": Data Compression): the even bytes of all values, then
+    /// the odd ones (of halves the low and the high ones), as differences from the one before, deflated; where that is
+    /// no shorter, the values as they are.
+    fn packed(&mut self, channels: &[Channel<'_>], at: BlockIndex, effort: Effort) -> Chunk {
+        let Self { apart, differences, deflated } = self;
+        split(channels, at, apart);
+        differences.resize(apart.len(), 0);
+        // 128 is no difference; the first byte is itself.
+        if let ([first, rest @ ..], [before, ..]) = (&mut differences[..], &apart[..]) {
+            *first = *before;
+            for (to, [before, this]) in rest.iter_mut().zip(apart.array_windows()) {
+                *to = this.wrapping_sub(*before).wrapping_add(128);
+            }
+        }
+        deflated.resize(zlib_rs::compress_bound(differences.len()), 0);
+        let config = DeflateConfig::new(effort.0);
+        let (packed, done) = zlib_rs::compress_slice(deflated, differences, config);
+        let shorter = done == ReturnCode::Ok && packed.len() < apart.len();
+        let compressed_pixels_le = if shorter { packed.to_vec() } else { joined(apart) };
+        // The data window begins at 0, and sides of images are within 2^20.
+        let y_coordinate = i32::try_from(at.pixel_position.y()).unwrap_or_default();
+        let block = CompressedScanLineBlock { y_coordinate, compressed_pixels_le };
+        Chunk { layer_index: at.layer, compressed_block: CompressedBlock::ScanLine(block) }
     }
-    // 128 is no difference; the first byte is itself.
-    let differences = apart.array_windows().map(|[before, this]| this.wrapping_sub(*before).wrapping_add(128));
-    let apart = apart.iter().take(1).copied().chain(differences).collect::<Vec<u8>>();
-    let mut space = vec![0; zlib_rs::compress_bound(apart.len())];
-    let config = DeflateConfig::new(effort.0);
-    let (deflated, done) = zlib_rs::compress_slice(&mut space, &apart, config);
-    let count = deflated.len();
-    let shorter = done == ReturnCode::Ok && count < data.len();
-    space.truncate(count);
-    let compressed_pixels_le = if shorter { space } else { data };
-    // The data window begins at 0, and sides of images are within 2^20.
-    let y_coordinate = i32::try_from(index.pixel_position.y()).unwrap_or_default();
-    let block = CompressedScanLineBlock { y_coordinate, compressed_pixels_le };
-    Chunk { layer_index: index.layer, compressed_block: CompressedBlock::ScanLine(block) }
+}
+
+/// The values whose even and odd bytes `apart` has.
+fn joined(apart: &[u8]) -> Vec<u8> {
+    let (even, odd) = apart.split_at(apart.len() / 2);
+    even.iter().zip(odd).flat_map(|(even, odd)| [*even, *odd]).collect()
 }
 
 /// The bytes that the format's texts may have; others become question marks.
@@ -148,34 +157,39 @@ fn text(words: &str) -> Text {
     Text::from_bytes_unchecked(known.collect())
 }
 
-/// The values of scan lines: row by row, in each row channel by channel.
-fn lines(channels: &[Channel<'_>], at: BlockIndex) -> Vec<u8> {
+/// The even bytes of the values of scan lines, then the odd ones: row by row, in each row channel by channel, little
+/// ends first.
+fn split(channels: &[Channel<'_>], at: BlockIndex, apart: &mut Vec<u8>) {
     let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = at;
     let line = width * channels.iter().map(|channel| channel.image.format().channel_bytes()).sum::<usize>();
-    let mut values = vec![0; line * height];
-    let mut rest = &mut values[..];
+    apart.resize(line * height, 0);
+    let (mut even, mut odd) = apart.split_at_mut(line * height / 2);
     for y in top..top + height {
         for Channel { image, index, .. } in channels {
             let (pixel, value) = (image.format().bytes_per_pixel(), image.format().channel_bytes());
             let row = &image.row(y as u32)[left * pixel..(left + width) * pixel];
-            let (to, after) = rest.split_at_mut(width * value);
-            rest = after;
+            let half = width * value / 2;
+            let (to_even, after_even) = even.split_at_mut(half);
+            let (to_odd, after_odd) = odd.split_at_mut(half);
+            (even, odd) = (after_even, after_odd);
             match (value, pixel) {
-                (2, 8) => gather::<2, 8>(row, *index, to),
-                (4, 16) => gather::<4, 16>(row, *index, to),
+                (2, 8) => gather::<2, 8>(row, *index, to_even, to_odd),
+                (4, 16) => gather::<4, 16>(row, *index, to_even, to_odd),
                 // One value a pixel.
-                _ => to.copy_from_slice(row),
+                _ => gather::<4, 4>(row, 0, to_even, to_odd),
             }
         }
     }
-    values
 }
 
-/// The values of one channel, of V bytes, of pixels of P bytes.
-fn gather<const V: usize, const P: usize>(row: &[u8], index: usize, to: &mut [u8]) {
+/// The even and the odd bytes of one channel's values, of V bytes, of pixels of P bytes.
+fn gather<const V: usize, const P: usize>(row: &[u8], index: usize, even: &mut [u8], odd: &mut [u8]) {
     let (pixels, _) = row.as_chunks::<P>();
-    let (values, _) = to.as_chunks_mut::<V>();
-    for (value, pixel) in values.iter_mut().zip(pixels) {
-        value.copy_from_slice(&pixel[index * V..][..V]);
+    for ((pixel, even), odd) in pixels.iter().zip(even.chunks_exact_mut(V / 2)).zip(odd.chunks_exact_mut(V / 2)) {
+        for byte in 0..V / 2 {
+            // The format's values begin with their low bytes, whatever the processor's do.
+            let place = |of: usize| index * V + if cfg!(target_endian = "little") { of } else { V - 1 - of };
+            (even[byte], odd[byte]) = (pixel[place(2 * byte)], pixel[place(2 * byte + 1)]);
+        }
     }
 }
