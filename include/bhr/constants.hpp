@@ -153,9 +153,9 @@ enum class Format : std::int32_t {
     rgba8_srgb = BHR_FORMAT_RGBA8_SRGB,
     /// 4 bytes: blue, green, red with the sRGB curve, alpha.
     bgra8_srgb = BHR_FORMAT_BGRA8_SRGB,
-    /// 4 half floats: linear radiance, Rec.
+    /// 4 half floats: linear radiance, Rec. 709 primaries; alpha.
     rgba16f = BHR_FORMAT_RGBA16F,
-    /// 4 floats: linear radiance, Rec.
+    /// 4 floats: linear radiance, Rec. 709 primaries; alpha.
     rgba32f = BHR_FORMAT_RGBA32F,
     /// 1 float: the value of a view or an output, or the distance of an occluder.
     r32f = BHR_FORMAT_R32F,

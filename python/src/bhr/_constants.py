@@ -154,9 +154,9 @@ class Format(enum.IntEnum):
     RGBA8_SRGB = 1
     #: 4 bytes: blue, green, red with the sRGB curve, alpha.
     BGRA8_SRGB = 2
-    #: 4 half floats: linear radiance, Rec.
+    #: 4 half floats: linear radiance, Rec. 709 primaries; alpha.
     RGBA16F = 3
-    #: 4 floats: linear radiance, Rec.
+    #: 4 floats: linear radiance, Rec. 709 primaries; alpha.
     RGBA32F = 4
     #: 1 float: the value of a view or an output, or the distance of an occluder.
     R32F = 5
