@@ -140,7 +140,7 @@ enum class VolumeShape : std::int32_t {
 enum class Flow : std::int32_t {
     /// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there.
     keplerian = BHR_FLOW_KEPLERIAN,
-    /// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al.
+    /// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020.
     angular_momentum = BHR_FLOW_ANGULAR_MOMENTUM,
     /// Away from the hole, the faster the farther, as the matter of a jet: at rest at r = inner_radius, at speed far
     /// away, falling in nearer to the hole.

@@ -43,8 +43,9 @@ pub fn sentence(documentation: &str) -> String {
         return "Reserved: 0.".into();
     }
     let plain = documentation.split_once(".flags: ").map_or(documentation, |(_, rest)| rest);
-    // Two dots are those of a range, and "Rec. 709" is a name.
-    let is_end = |(at, _): &(usize, &str)| !plain[..*at].ends_with('.') && !plain[..*at].ends_with("Rec");
+    // Two dots are those of a range; "Rec. 709" and "et al. 2020" go on.
+    let goes_on = |before: &str| [".", "Rec", "et al"].iter().any(|end| before.ends_with(end));
+    let is_end = |(at, _): &(usize, &str)| !goes_on(&plain[..*at]);
     let mut ends = plain.match_indices(". ").filter(is_end);
     let end = ends.next().map_or(plain.len(), |(at, _)| at + 1);
     let sentence = plain[..end].split('\n').next().unwrap().trim();
@@ -209,7 +210,7 @@ fn cpp_type(json: &Value, object: &str, field: &Value) -> String {
     }
 }
 
-fn structs_hpp(json: &Value) -> String {
+pub fn structs_hpp(json: &Value) -> String {
     let mut code = cpp_opening(
         "structs",
         "the structs that programs fill in, with the defaults of bhr.h.",

@@ -19,10 +19,11 @@ const STRUCTS: [(&str, &[&str]); 3] = [
 /// Folders that mirrors lie in. Tests, the twins among them, compare all fields, and fail by themselves.
 const FOLDERS: [&str; 6] = ["examples-c", "examples-other", "include", "python/src", "shaders", "src"];
 
-/// Files that are generated, what tests only, and what names a few fields that options call otherwise.
+/// Files that are generated, what tests only, and what names a few fields that users see under other names.
 fn is_left_out(path: &Path) -> bool {
     let known = [
         "examples-c/fields.c",
+        "examples-c/panel/field_look.cpp",
         "examples-c/scene_options.c",
         "include/bhr.h",
         "include/bhr.json",

@@ -140,7 +140,7 @@ class Flow(enum.IntEnum):
 
     #: On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there.
     KEPLERIAN = 0
-    #: -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al.
+    #: -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020.
     ANGULAR_MOMENTUM = 1
     #: Away from the hole, the faster the farther, as the matter of a jet: at rest at r = inner_radius, at speed far
     #: away, falling in nearer to the hole.
