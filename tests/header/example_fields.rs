@@ -87,7 +87,7 @@ fn about(documentation: &str) -> String {
 }
 
 /// A number as C and people write it.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { value.to_string() }
 }
@@ -146,7 +146,7 @@ fn rows_of(json: &Value, object: &str, field: &Value) -> String {
     }
 }
 
-fn fields_c(json: &Value) -> String {
+pub fn fields_c(json: &Value) -> String {
     let mut code = OPENING.to_owned();
     for enumeration in entries(json, "enumerations").iter().map(|entry| text(&entry["name"])) {
         if !UNCHOSEN.contains(&enumeration) {

@@ -51,7 +51,7 @@ fn kind(json: &Value, object: &str, field: &Value) -> String {
     }
 }
 
-fn generate(json: &Value) -> String {
+pub fn generate(json: &Value) -> String {
     let mut file = OPENING.to_owned();
     let mut uses = STRUCTS.map(|(name, module)| format!("use super::{module}::{name};")).to_vec();
     uses.push("use super::fields::{Described, Field, Kind, Words};".into());

@@ -42,13 +42,13 @@ from typing import Any, ClassVar
 ";
 
 /// An enumeration or a set of bits of a field.
-struct Kind {
-    class: String,
-    is_bits: bool,
-    members: Vec<Member>,
+pub struct Kind {
+    pub class: String,
+    pub is_bits: bool,
+    pub members: Vec<Member>,
 }
 
-fn kind(json: &Value, object: &str, field: &Value) -> Option<Kind> {
+pub fn kind(json: &Value, object: &str, field: &Value) -> Option<Kind> {
     let (base, place) = (text(&field["base"]), format!("{object}.{}", text(&field["name"])));
     if entries(json, "enumerations").iter().any(|entry| entry["name"] == base) {
         return Some(Kind { class: base.replacen("Bhr", "", 1), is_bits: false, members: members(json, base) });
@@ -69,8 +69,9 @@ fn python_names(json: &Value) -> BTreeMap<String, String> {
     names.collect()
 }
 
-/// A comment of the header in Python's words: constants by their names there, and a field's enumeration by its own.
-fn in_python(documentation: &str, kind: Option<&Kind>, names: &BTreeMap<String, String>) -> String {
+/// A comment of the header in another language's words: constants by their `names` there, and a field's enumeration by
+/// its own.
+pub fn translated(documentation: &str, kind: Option<&Kind>, names: &BTreeMap<String, String>) -> String {
     let mut said = String::new();
     let mut rest = documentation;
     while let Some(at) = rest.find("BHR_") {
@@ -140,25 +141,26 @@ fn ordered<'a>(object: &'a Value, first: &[&str]) -> Vec<&'a Value> {
     fields
 }
 
-fn is_hidden(name: &str) -> bool {
+pub fn is_hidden(name: &str) -> bool {
     name == "struct_size" || name.starts_with("reserved")
 }
 
-fn fields_py(json: &Value) -> String {
+pub fn fields_py(json: &Value) -> String {
     let names = python_names(json);
     let (mut classes, mut imports) = (String::new(), Vec::new());
     for (c_name, first) in STRUCTS {
         let object = entries(json, "structs").iter().find(|object| object["name"] == c_name).unwrap();
         let class = c_name.replacen("Bhr", "", 1);
         let base = METHODS.iter().find(|(of, ..)| *of == c_name).map_or("Struct", |(_, methods, _)| methods);
-        let about = wrapped("   ", &format!("\"\"\"{}\"\"\"", in_python(text(&object["documentation"]), None, &names)));
+        let about =
+            wrapped("   ", &format!("\"\"\"{}\"\"\"", translated(text(&object["documentation"]), None, &names)));
         let fields = ordered(object, first);
         let is_input = fields.iter().any(|field| field.get("default").is_some());
         let (mut lines, mut enumerations) = (String::new(), Vec::new());
         for field in fields {
             let name = text(&field["name"]);
             let (place, kind) = (format!("{c_name}.{name}"), kind(json, c_name, field));
-            lines += &wrapped("    #:", &in_python(text(&field["documentation"]), kind.as_ref(), &names));
+            lines += &wrapped("    #:", &translated(text(&field["documentation"]), kind.as_ref(), &names));
             write!(lines, "    {name}: {}", annotation(field, kind.as_ref(), is_input)).unwrap();
             let default = default(&place, field, kind.as_ref());
             lines += &default.map_or("\n".into(), |default| format!(" = {default}\n"));
