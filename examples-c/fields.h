@@ -17,7 +17,7 @@ typedef struct Field {
     size_t        offset;    /* in its struct */
     const char   *unit;      /* NULL: none */
     double        low, high; /* the values that the library takes; both 0: bhr.h has no range in numbers */
-    const char   *range;     /* the same as text, or NULL */
+    const char   *range;     /* the same as text, of angles in degrees, or NULL */
     const char   *about;     /* bhr.h's first sentence of it, without the stop */
     const Choice *choices;   /* as an Option has them; of a BIT that one alone counts */
 } Field;

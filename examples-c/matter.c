@@ -11,7 +11,7 @@
 
 /* A word that takes a bit away; the fields' own words give one. */
 typedef struct Unword {
-    const char *name;
+    const char *name, *about;
     size_t      offset;
     uint32_t    bit;
 } Unword;
@@ -23,7 +23,8 @@ typedef struct Syntax {
     const Unword *unword; /* NULL: none */
 } Syntax;
 
-static const Unword THERMAL = {"thermal", offsetof(BhrVolume, flags), BHR_VOLUME_POWER_LAW};
+static const Unword THERMAL = {"thermal", "the light is a blackbody's: takes power-law back",
+                               offsetof(BhrVolume, flags), BHR_VOLUME_POWER_LAW};
 static const Syntax VOLUME = {VOLUME_FIELDS, VOLUME_KINDS, &THERMAL};
 static const Syntax HOT_SPOT = {HOT_SPOT_FIELDS, NULL, NULL};
 
@@ -38,9 +39,9 @@ static const Choice *find_choice(const Choice *choices, const char *text) {
     return NULL;
 }
 
-/* 1 when all of `text` is `count` numbers with slashes between them. */
+/* 1 when all of `text` is `count` numbers, four at most, with slashes between them. */
 static int read_numbers(const char *text, int count, double *out) {
-    double value[3];
+    double value[4];
     for (int i = 0; i < count; i++) {
         text = option_read_double(text, &value[i]);
         if (text == NULL || *text != (i + 1 < count ? '/' : '\0')) {
@@ -57,6 +58,7 @@ static int read_value(const Field *field, const char *value, void *out) {
     char         *target = (char *)out + field->offset;
     const Choice *choice;
     double        number;
+    uint64_t      whole;
     if ((value == NULL) != (field->kind == OPTION_BIT)) {
         return 0;
     }
@@ -70,10 +72,20 @@ static int read_value(const Field *field, const char *value, void *out) {
             *(int32_t *)(void *)target = choice->value;
         }
         return choice != NULL;
+    case OPTION_UINT:
+        if (!option_read_uint64(value, &whole) || whole > UINT32_MAX) {
+            return 0;
+        }
+        *(uint32_t *)(void *)target = (uint32_t)whole;
+        return 1;
     case OPTION_UINT64:
         return option_read_uint64(value, (uint64_t *)(void *)target);
+    case OPTION_PAIR:
+        return read_numbers(value, 2, (double *)(void *)target);
     case OPTION_VECTOR:
         return read_numbers(value, 3, (double *)(void *)target);
+    case OPTION_FOUR:
+        return read_numbers(value, 4, (double *)(void *)target);
     case OPTION_DOUBLE:
     case OPTION_DEGREES:
         if (!read_numbers(value, 1, &number)) {
@@ -89,7 +101,10 @@ static int read_value(const Field *field, const char *value, void *out) {
 static void print_value_name(FILE *out, const Field *field) {
     switch (field->kind) {
     case OPTION_BIT: fputs("no value", out); return;
+    case OPTION_PAIR: fputs("X/Y", out); return;
     case OPTION_VECTOR: fputs("R/G/B", out); return;
+    case OPTION_FOUR: fputs("X/Y/Z/W", out); return;
+    case OPTION_UINT:
     case OPTION_UINT64: fputs("a whole number", out); return;
     case OPTION_DEGREES: fputs("degrees", out); return;
     case OPTION_CHOICE: break;
@@ -106,14 +121,23 @@ static int is_key(const Syntax *syntax, const Field *field) {
     return syntax->first == NULL || field->choices != syntax->first;
 }
 
+/* Says what keys there are, with what bhr.h says of each. */
 static int refuse_field(const char *name, const char *text, const char *item, const Syntax *syntax) {
-    fprintf(stderr, "%s '%s': there is no field '%s'; the fields are", name, text, item);
+    fprintf(stderr, "%s '%s': there is no field '%s'; the fields are\n", name, text, item);
     for (const Field *field = syntax->fields; field->option != NULL; field++) {
         if (is_key(syntax, field)) {
-            fprintf(stderr, " %s", FIELD_NAME(field));
+            fprintf(stderr, "  %s: ", FIELD_NAME(field));
+            print_value_name(stderr, field);
+            options_print_help(stderr, field->about);
+            if (field->range != NULL && strstr(field->about, " .. ") == NULL) {
+                fprintf(stderr, "; %s", field->range);
+            }
+            fputc('\n', stderr);
         }
     }
-    fprintf(stderr, "%s%s\n", syntax->unword != NULL ? " " : "", syntax->unword != NULL ? syntax->unword->name : "");
+    if (syntax->unword != NULL) {
+        fprintf(stderr, "  %s: no value\n        %s\n", syntax->unword->name, syntax->unword->about);
+    }
     return EXIT_USAGE;
 }
 

@@ -294,8 +294,7 @@ static void print_default(FILE *out, const Option *option) {
     }
 }
 
-/* Words in lines of at most 120 columns, each behind 8 blanks. */
-static void print_help(FILE *out, const char *words) {
+void options_print_help(FILE *out, const char *words) {
     size_t column = 120;
     while (*words != '\0') {
         const size_t length = strcspn(words, " ");
@@ -313,7 +312,7 @@ void options_print(FILE *out, const Option *options, size_t count) {
     for (size_t i = 0; i < count; i++) {
         fprintf(out, "  %s", options[i].name);
         print_value_name(out, &options[i]);
-        print_help(out, options[i].help);
+        options_print_help(out, options[i].help);
         if (options[i].range != NULL) {
             fprintf(out, "; %s", options[i].range);
         }

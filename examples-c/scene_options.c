@@ -63,10 +63,10 @@ static const SceneOption TABLE[] = {
     {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
 
     {"--volume", SCENE_MATTER, OPTION_TEXTS, AT(volumes), VOLUME_VALUE, "4 of them",
-     "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B; "
-     "torus,radius=9,infall=0.2,power-law", NULL},
+     "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B "
+     "(disk,help lists them); torus,radius=9,infall=0.2,power-law", NULL},
     {"--hot-spot", SCENE_MATTER, OPTION_TEXTS, AT(hot_spots), HOT_SPOT_VALUE, "8 of them",
-     "a blob in orbit: fields as BhrHotSpot has them; radius=7,size=0.7,azimuth=90", NULL},
+     "a blob in orbit: fields as BhrHotSpot has them (help lists them); radius=7,size=0.7,azimuth=90", NULL},
 
     {"--no-stars", SCENE_SKY, OPTION_UNFLAG, AT(scene.has_sky), NULL, NULL, "makes the sky black", NULL},
     {"--sky-map", SCENE_SKY, OPTION_TEXT, AT(sky_map), "FILE", NULL, "a picture of the whole sky, .png .ppm .exr",

@@ -99,7 +99,16 @@ fn row(option: &str, kind: &str, place: &str, field: &Value, about: &str, choice
     let [low, high] = range.clone().unwrap_or(["0".into(), "0".into()]);
     let mut row = format!("    {{\"--{option}\", {kind}, {place}, ");
     let unit = quoted(field["unit"].as_str().map(str::to_owned));
-    let range = quoted(range.map(|[low, high]| format!("{low} .. {high}")));
+    let in_degrees = |end: f64| short((end.to_degrees() * 100.0).round() / 100.0);
+    let range = match field["range"].as_array() {
+        // Ends of angles in degrees are rounded, and more than some turns are none to a reader.
+        Some(ends) if kind == "OPTION_DEGREES" => {
+            let [low, high] = [0, 1].map(|end| ends[end].as_f64().unwrap());
+            (high < 100.0).then(|| format!("{} .. {}", in_degrees(low), in_degrees(high)))
+        }
+        _ => range.map(|[low, high]| format!("{low} .. {high}")),
+    };
+    let range = quoted(range);
     row += &format!("{unit}, {low}, {high}, {range},\n");
     // A literal for each line that a long sentence needs.
     let mut lines = vec![String::from("     \"")];
@@ -137,7 +146,10 @@ fn rows_of(json: &Value, object: &str, field: &Value) -> String {
             bits.iter().enumerate().map(word).collect()
         }
         ("uint64_t", None) => one("OPTION_UINT64", &said, "NULL"),
-        ("double", None) if field["unit"] == "rad" => one("OPTION_DEGREES", &said, "NULL"),
+        // Options take degrees: the header's radians and their range would mislead.
+        ("double", None) if field["unit"] == "rad" => {
+            one("OPTION_DEGREES", said.split(", radians").next().unwrap(), "NULL")
+        }
         ("double", None) => one("OPTION_DOUBLE", &said, "NULL"),
         ("double", Some(2)) => one("OPTION_PAIR", &said, "NULL"),
         ("double", Some(3)) => one("OPTION_VECTOR", &said, "NULL"),
