@@ -25,8 +25,8 @@ typedef struct Choice {
 } Choice;
 
 /* ---- names: all lists are in fields.c ---- */
-extern const Choice BACKENDS[], PROJECTIONS[], MOTIONS[], EYES[], PRESETS[], PRESET_MATTERS[], METHODS[], VIEWS[],
-    TONE_MAPS[];
+extern const Choice BACKENDS[], PROJECTIONS[], MOTIONS[], EYES[], PRESETS[], PRESET_MATTERS[], METHODS[],
+    VOLUME_RESOLUTIONS[], VIEWS[], TONE_MAPS[], COLOUR_MAPS[];
 const char *choice_name(const Choice *choices, int32_t value); /* "?" for none of them */
 
 /* ---- reports ---- */
