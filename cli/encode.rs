@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Threads that write frames to files while the next ones are rendered. Frames that wait hold their pixels: there are
-//! only so many of these, which bounds the memory. Knows no tracer.
+//! Threads that write frames while the next ones are rendered. Frames that wait hold their pixels: there are only so
+//! many of these, which bounds the memory. Knows no files and no tracer.
 
 use crate::ending::Ending;
-use crate::manifest::Made;
-use bhr::image::{Alpha, Attribute, Effort, ImageRef, Layer, Layout, save, save_layers};
-use bhr::scene::Output;
-use std::fs::File;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,36 +17,25 @@ const MOST_OF_A_FRAME: u64 = 64 << 30;
 /// Pixels of a frame, aligned to every format's channels.
 pub type Pixels = Vec<u32>;
 
-/// A frame that is to be written.
+/// Writes the pixels of a frame.
+type Write = Box<dyn FnOnce(&[u32]) -> Written + Send>;
+
+/// A frame that is to be written, and how.
 pub struct Frame {
     pub pixels: Pixels,
-    pub layout: Layout,
-    pub transparent: bool,
-    pub attributes: Vec<(String, Attribute)>,
-    pub effort: Effort,
-    pub made: Made,
-    pub manifest: PathBuf,
-    /// Held while the frame is being made.
-    pub claim: Claim,
+    pub write: Write,
 }
 
-/// A lock on a frame, which tells other programs that it is being made. The system ends it with this program, however
-/// that ends.
-pub struct Claim {
-    pub path: PathBuf,
-    pub file: Option<File>,
+/// A frame that is there.
+pub struct Done {
+    pub frame: u32,
+    pub file: PathBuf,
+    /// How long it took; `None`: it was there before.
+    pub seconds: Option<f64>,
 }
 
-impl Drop for Claim {
-    fn drop(&mut self) {
-        // Removed before it is unlocked: who waits for it then has a file that is none's, and finds the frame there.
-        let _ = std::fs::remove_file(&self.path);
-        drop(self.file.take());
-    }
-}
-
-/// A frame whose file is there, or what is wrong with it.
-type Written = Result<Made, Ending>;
+/// Frames that writing one has finished, or what is wrong with it.
+pub type Written = Result<Vec<Done>, Ending>;
 
 pub struct Encoders {
     threads: Vec<JoinHandle<()>>,
@@ -142,26 +127,10 @@ fn work(orders: &Mutex<Receiver<Frame>>, tell: &Sender<Written>, give_back: &Sen
     loop {
         // The lock ends with this statement: the others get the next frames while this one is written.
         let order = orders.lock().unwrap_or_else(PoisonError::into_inner).recv();
-        let Ok(mut frame) = order else { return };
-        let result = write(&frame);
-        let pixels = std::mem::take(&mut frame.pixels);
-        let Frame { made, claim, .. } = frame;
-        drop(claim);
+        let Ok(Frame { pixels, write }) = order else { return };
+        let written = write(&pixels);
         // Where nobody listens any more the program is ending.
         let _ = give_back.send(pixels);
-        let _ = tell.send(result.map(|()| made));
+        let _ = tell.send(written);
     }
-}
-
-fn write(frame: &Frame) -> Result<(), Ending> {
-    frame.made.announce(&frame.manifest)?;
-    let image = ImageRef::new(frame.layout, bytemuck::cast_slice(&frame.pixels))?;
-    let file = &frame.made.file;
-    if frame.layout.format.is_developed() {
-        save(&image, if frame.transparent { Alpha::Premultiplied } else { Alpha::AsInFile }, file)?;
-    } else {
-        let channels = Output::of_view(bhr::scene::View::Light).channels();
-        save_layers(&[Layer { channels, image }], &frame.attributes, frame.effort, file)?;
-    }
-    frame.made.note(&frame.manifest)
 }

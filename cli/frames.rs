@@ -80,6 +80,15 @@ impl Names {
         Ok(Self { before: name[..begin].into(), digits: end + 1 - begin, after: name[end + 1..].into(), folder })
     }
 
+    /// The name of one file for all frames. Errors: it has a #.
+    pub fn of_one(path: &Path) -> Result<Self, Ending> {
+        let names = Self::new(path, false)?;
+        match names.digits {
+            0 => Ok(names),
+            _ => Err(Ending::usage(format!("--out {}: a video has all frames, and no place for a #", path.display()))),
+        }
+    }
+
     pub fn of(&self, frame: u32) -> PathBuf {
         let number = if self.digits == 0 { String::new() } else { format!("{frame:0digits$}", digits = self.digits) };
         self.folder.join(format!("{}{number}{}", self.before, self.after))

@@ -4,12 +4,17 @@
 
 mod ending;
 mod frames;
+mod claim;
 mod manifest;
-mod progress;
 mod signals;
 mod encode;
+mod progress;
 mod open;
 mod look;
+mod order;
+mod video;
+mod pictures;
+mod film;
 mod render;
 mod join;
 
@@ -34,7 +39,7 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn device() -> [Arg; 2] {
     [
         option("backend", "NAME", "auto, cpu, vulkan, metal, d3d12 or gl").default_value("auto"),
-        option("adapter", "N", "The adapter of this number in `bhr adapters`").value_parser(value_parser!(u32)),
+        option("adapter", "N", "The adapter of this number in `bhr adapters`; render: also 0,1 or all GPUs"),
     ]
 }
 
@@ -44,9 +49,13 @@ fn command() -> Command {
         .args_override_self(true)
         .arg(scene())
         .arg(
-            option("out", "FILE", "A .png or .exr file; ###### becomes the frame's number in as many digits")
-                .required(true)
-                .value_parser(value_parser!(PathBuf)),
+            option(
+                "out",
+                "FILE",
+                "Pictures, .png or .exr, where ###### becomes the frame's number; or one video, .mp4 or .mov",
+            )
+            .required(true)
+            .value_parser(value_parser!(PathBuf)),
         )
         .arg(option("frames", "LIST", "Such as 0-99, 0-99x3 or 5,7,20-30; all frames of the scene without it"))
         .arg(option("size", "WxH", "Pixels, instead of the scene's"))
@@ -62,7 +71,29 @@ fn command() -> Command {
                 .num_args(0)
                 .action(ArgAction::SetTrue),
         )
+        .arg(option("outputs", "LIST", "Layers of .exr files beside the light: depth,sky,position,position1 .."))
+        .arg(option("stereo", "PLACES", "Both eyes of a panorama: top-bottom or side-by-side"))
+        .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265, av1, prores (.mov) or prores4444"))
+        .arg(
+            option("quality", "N", "Of a video: 0 best .. 51, of av1 1 .. 63; default 14, of h265 16, of av1 20")
+                .value_parser(value_parser!(u32)),
+        )
+        .arg(
+            option("keyframes", "N", "Of a video: frames that are encoded at a time; default two seconds, 16 at least")
+                .value_parser(value_parser!(u32).range(16..=100_000)),
+        )
+        .arg(
+            option("ffmpeg", "FILE", "The program that encodes videos")
+                .default_value("ffmpeg")
+                .value_parser(value_parser!(PathBuf)),
+        )
         .arg(option("again", "", "Renders frames that are there as well").num_args(0).action(ArgAction::SetTrue))
+        .arg(
+            option("continue", "", "Goes on with what is there, as without it; the opposite of --again")
+                .num_args(0)
+                .action(ArgAction::SetTrue)
+                .overrides_with("again"),
+        )
         .arg(
             option("dry-run", "", "Renders three small frames, and says what the whole takes")
                 .num_args(0)

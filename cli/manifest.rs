@@ -43,6 +43,13 @@ pub fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// The [`hash`] of a file's content, which need not fit into memory.
+fn hash_of(file: &Path) -> std::io::Result<String> {
+    let mut hasher = Sha256::new();
+    std::io::copy(&mut File::open(file)?, &mut hasher)?;
+    Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
 fn name_of(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
@@ -55,7 +62,7 @@ impl Made {
 
     /// Says that the file is there.
     pub fn note(&self, manifest: &Path) -> Result<(), Ending> {
-        let bytes = std::fs::read(&self.file).map_err(|error| Ending::io(&self.file, error))?;
+        let sha256 = hash_of(&self.file).map_err(|error| Ending::io(&self.file, error))?;
         let tile = self.of.tile.map(|Tile { region, size: [width, height] }| {
             json!({"x": region.x, "y": region.y, "width": width, "height": height,
                    "full_width": region.full_width, "full_height": region.full_height})
@@ -63,7 +70,7 @@ impl Made {
         let line = json!({
             "frame": self.of.frame,
             "file": name_of(&self.file),
-            "sha256": hash(&bytes),
+            "sha256": sha256,
             "scene": self.of.scene,
             "bhr": env!("CARGO_PKG_VERSION"),
             "backend": self.backend,
@@ -90,6 +97,22 @@ fn append(manifest: &Path, line: &Value) -> Result<(), Ending> {
         file.write_all(format!("{begin}{line}\n").as_bytes())
     };
     write().map_err(|error| Ending::io(manifest, error))
+}
+
+/// How much of a video is there, of which other programs or machines may have made a part: whole fragments, and their
+/// bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Part {
+    pub frames: usize,
+    pub bytes: u64,
+}
+
+impl Part {
+    /// Says that so much of the video `of` is there, flushed to disk.
+    pub fn note(self, file: &Path, of: &Fingerprint, manifest: &Path) -> Result<(), Ending> {
+        let line = json!({"file": name_of(file), "video": of.scene, "frames": self.frames, "bytes": self.bytes});
+        append(manifest, &line)
+    }
 }
 
 /// The last line of each file in a manifest. Lines that are no object, such as one that a program was killed in, count
@@ -129,6 +152,23 @@ impl Manifest {
                 self.lines.insert(file.to_owned(), line);
             }
         }
+    }
+
+    /// Whether a file is there, whole, and of this frame as far as that is known. A tile that nobody has noted could
+    /// not be joined.
+    pub fn has(&self, file: &Path, of: &Fingerprint) -> bool {
+        let is_file = std::fs::metadata(file).is_ok_and(|found| found.is_file() && found.len() > 0);
+        is_file
+            && match self.frame_of(file) {
+                None => of.tile.is_none(),
+                Some(noted) => noted.is_some_and(|noted| noted == *of),
+            }
+    }
+
+    /// How much of a video is there, of one that is like `of` in all.
+    pub fn part_of(&self, file: &Path, of: &Fingerprint) -> Option<Part> {
+        let line = self.lines.get(&name_of(file)).filter(|line| line["video"] == of.scene.as_str())?;
+        Some(Part { frames: usize::try_from(line["frames"].as_u64()?).ok()?, bytes: line["bytes"].as_u64()? })
     }
 
     /// The frame that a file shows. The outer `None`: nobody has noted it; the inner one: it was being written.

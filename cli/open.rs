@@ -2,10 +2,11 @@
 //! A scene file and a renderer for it, as arguments name them.
 
 use crate::ending::Ending;
-use bhr::error::ErrorKind;
-use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::error::{Error, ErrorKind};
+use bhr::renderer::{Backend, Renderer, RendererOptions, adapters};
 use bhr::scene_file::{Render, SceneFile};
 use bhr::sky::MapFile;
+use bhr::tracer::AdapterInfo;
 use clap::ArgMatches;
 use std::path::PathBuf;
 
@@ -38,8 +39,47 @@ impl Opened {
     }
 }
 
-/// The renderer that arguments ask for.
+/// The adapters that `--adapter` names; `None`: the first that fits.
+fn adapter_indices(given: &ArgMatches, backend: Option<Backend>) -> Result<Vec<Option<u32>>, Ending> {
+    let Some(text) = given.get_one::<String>("adapter") else { return Ok(vec![None]) };
+    if text == "all" {
+        let all = adapters();
+        let is_gpu = |adapter: &AdapterInfo| !adapter.software && backend.is_none_or(|only| adapter.backend == only);
+        // A GPU is there once for each backend: the first one's is the best. Beside one with memory of its own a
+        // processor's is too slow to help.
+        let first = all.iter().find(|adapter| is_gpu(adapter)).map(|adapter| adapter.backend);
+        let gpus = all.iter().zip(0..).filter(|(adapter, _)| is_gpu(adapter) && Some(adapter.backend) == first);
+        let discrete = gpus.clone().any(|(adapter, _)| adapter.discrete);
+        let gpus = gpus.filter(|(adapter, _)| adapter.discrete || !discrete).map(|(_, index)| Some(index));
+        let gpus = gpus.collect::<Vec<_>>();
+        return match gpus.is_empty() {
+            true => Err(Error::new(ErrorKind::NoAdapter, "--adapter all: this machine has no GPU").into()),
+            false => Ok(gpus),
+        };
+    }
+    let wrong = || Ending::usage(format!("--adapter {text}: it must be a number, numbers as 0,1, or all"));
+    let list = text.split(',').map(|number| number.trim().parse::<u32>().ok());
+    let list = list.collect::<Option<Vec<u32>>>().ok_or_else(wrong)?;
+    if list.len() > MOST_RENDERERS {
+        return Err(Ending::usage(format!("--adapter {text}: it must name {MOST_RENDERERS} at most")));
+    }
+    Ok(list.into_iter().map(Some).collect())
+}
+
+/// More adapters than machines have.
+const MOST_RENDERERS: usize = 64;
+
+/// The one renderer that arguments ask for.
 pub fn renderer(given: &ArgMatches) -> Result<Renderer, Ending> {
+    let mut renderers = renderers(given)?;
+    match (renderers.pop(), renderers.is_empty()) {
+        (Some(renderer), true) => Ok(renderer),
+        _ => Err(Ending::usage("--adapter: this command takes one")),
+    }
+}
+
+/// The renderers that arguments ask for, one at least.
+pub fn renderers(given: &ArgMatches) -> Result<Vec<Renderer>, Ending> {
     let name = given.get_one::<String>("backend").map_or("auto", String::as_str);
     let backend = match name {
         "auto" => None,
@@ -52,8 +92,9 @@ pub fn renderer(given: &ArgMatches) -> Result<Renderer, Ending> {
             return Err(Ending::usage(format!("--backend {name}: it must be auto, cpu, vulkan, metal, d3d12 or gl")));
         }
     };
-    let adapter_index = given.get_one::<u32>("adapter").copied();
-    Ok(Renderer::new(RendererOptions { backend, adapter_index, ..RendererOptions::default() })?)
+    let open =
+        |adapter_index| Ok(Renderer::new(RendererOptions { backend, adapter_index, ..RendererOptions::default() })?);
+    adapter_indices(given, backend)?.into_iter().map(open).collect()
 }
 
 /// How often a device that was lost is opened anew.

@@ -2,13 +2,17 @@
 //! How far the program is, as people and farms read it: a bar on a terminal, lines of text, JSON, or OpenJD's. Knows no
 //! scene.
 
+use crate::encode::{Done, Encoders};
 use crate::ending::Ending;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-pub enum Progress {
+/// Any thread may report what is done.
+pub struct Progress(Mutex<Shown>);
+
+enum Shown {
     None,
     Bar(ProgressBar),
     Plain(Count),
@@ -39,23 +43,57 @@ impl Progress {
             bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar
         };
-        Ok(match kind {
-            "auto" if std::io::stderr().is_terminal() => Self::Bar(bar()),
-            "bar" => Self::Bar(bar()),
-            "auto" | "plain" => Self::Plain(count),
-            "json" => Self::Json(count),
-            "openjd" => Self::OpenJd(count),
-            "none" => Self::None,
+        let shown = match kind {
+            "auto" if std::io::stderr().is_terminal() => Shown::Bar(bar()),
+            "bar" => Shown::Bar(bar()),
+            "auto" | "plain" => Shown::Plain(count),
+            "json" => Shown::Json(count),
+            "openjd" => Shown::OpenJd(count),
+            "none" => Shown::None,
             _ => {
                 return Err(Ending::usage(format!(
                     "--progress {kind}: it must be auto, bar, plain, json, openjd or none"
                 )));
             }
-        })
+        };
+        Ok(Self(Mutex::new(shown)))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shown> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn frames(&self, done: &[Done]) {
+        done.iter().for_each(|done| self.frame(done));
+    }
+
+    /// Waits for all frames that were ordered. Frames that are rendered are written, whatever ended the rest; the
+    /// first mistake is returned.
+    pub fn finish(&self, encoders: Encoders, mut ended: Result<(), Ending>) -> Result<(), Ending> {
+        for written in encoders.finish() {
+            match written {
+                Ok(done) => self.frames(&done),
+                Err(ending) => ended = ended.and(Err(ending)),
+            }
+        }
+        ended
     }
 
     /// A frame's file is there: from this run after so many seconds, or from before.
-    pub fn frame(&mut self, frame: u32, file: &Path, seconds: Option<f64>) {
+    pub fn frame(&self, done: &Done) {
+        self.lock().frame(done);
+    }
+
+    pub fn end(&self) {
+        if let Shown::Bar(bar) = &*self.lock() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Shown {
+    fn frame(&mut self, done: &Done) {
+        let Done { frame, file, seconds } = done;
         let took = seconds.map_or("was there".into(), |seconds| format!("{seconds:.2} s"));
         let file = file.display();
         match self {
@@ -79,12 +117,6 @@ impl Progress {
                 say(&format!("openjd_progress: {:.2}", count.percent()));
                 say(&format!("openjd_status: frame {frame}: {file} ({took})"));
             }
-        }
-    }
-
-    pub fn end(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
         }
     }
 }

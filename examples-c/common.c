@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
- * whether a stream is a terminal, a new folder, the number of cores. */
+ * whether a stream is a terminal, a new folder, the program's own, the number of cores. */
 #if defined(__linux__)
 #define _GNU_SOURCE /* sched_getaffinity, and what POSIX has */
 #elif !defined(_WIN32)
 #define _POSIX_C_SOURCE 199506L /* clock_gettime, isatty, fileno */
+#ifdef __APPLE__
+#define _DARWIN_C_SOURCE /* _NSGetExecutablePath */
+#endif
 #endif
 
 #include "common.h"
@@ -23,6 +26,9 @@
 #endif
 #ifdef __linux__
 #include <sched.h>
+#endif
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
 #endif
 
 const char *choice_name(const Choice *choices, int32_t value) {
@@ -154,6 +160,31 @@ int is_terminal(FILE *stream) {
 #else
     return isatty(fileno(stream));
 #endif
+}
+
+void program_folder(char *out, size_t size) {
+#ifdef _WIN32
+    DWORD length = GetModuleFileNameA(NULL, out, (DWORD)size);
+    int   found = length > 0 && length < size;
+#elif defined(__linux__)
+    ssize_t length = readlink("/proc/self/exe", out, size);
+    int     found = length > 0 && (size_t)length < size;
+    out[found ? length : 0] = '\0';
+#elif defined(__APPLE__)
+    uint32_t length = (uint32_t)size;
+    int      found = _NSGetExecutablePath(out, &length) == 0;
+#else
+    int found = 0;
+#endif
+    char *end = NULL;
+    for (char *at = out; found && *at != '\0'; at++) {
+        end = *at == '/' || *at == '\\' ? at : end;
+    }
+    if (end != NULL) {
+        *end = '\0';
+    } else {
+        snprintf(out, size, ".");
+    }
 }
 
 int make_folder(const char *path) {

@@ -56,6 +56,7 @@ int      end_output(int result);        /* an exit status: EXIT_FAILURE instead 
 double   wall_seconds(void);            /* monotonic; only differences mean something */
 uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */
 int      is_terminal(FILE *stream);
+void     program_folder(char *out, size_t size); /* its file's; "." where the system does not tell */
 int      make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
 
 #ifdef __cplusplus

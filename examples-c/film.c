@@ -1,316 +1,150 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* film.c -- a fall into a black hole without spin, through the horizon to near its centre, as numbered pictures or as a
- * video: the frames are evenly spaced in the time of the one who falls, whose clock and radius each of them shows. Two
- * jobs are under way at a time, so that one frame is written while the next is rendered. Lengths in units of M, angles
- * in degrees. */
-#include "common.h"
+/* film.c -- plays a scene file (docs/scenes.md) into numbered pictures or a video; scenes/fall.toml unless told other.
+ * Two jobs are under way at a time, so that one frame is written while the next is rendered. */
+#include "options.h"
 #include "picture.h"
-#include "scene_options.h"
-#include "vectors.h"
+#include "scene_files.h"
 #include "video.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define JOBS 2
 #define MOST_FRAMES 99999u /* what five digits number */
-#define MOST_RATE 1000u
-#define MOST_RADIUS 1e6
-#define LEAST_RADIUS 1e-3
-#define HORIZON 2.0
-
-typedef enum Look { LOOK_IN, LOOK_OUT, LOOK_SIDE } Look;
-
-static const Choice LOOKS[] = {{"in", LOOK_IN}, {"out", LOOK_OUT}, {"side", LOOK_SIDE}, {NULL, 0}};
-
-typedef struct Settings {
-    SceneInput    *input; /* the look: laid over the preset once there is a context, by these arguments */
-    const Options *options;
-    int            argc;
-    char         **argv;
-    const char    *output, *video;
-    uint32_t       frames, rate, size[2], samples;
-    double         from, to, elevation, fov;
-    int32_t        look, projection, backend;
-    int            no_clock, help;
-} Settings;
-
-/* A frame under way: job is NULL when there is none. */
-typedef struct Slot {
-    BhrJob  *job;
-    BhrImage image;
-    uint32_t number;
-    double   proper_time, radius;
-} Slot;
+#define AS_SCENE UINT32_MAX
 
 typedef struct Film {
-    const Settings *settings;
-    BhrContext     *context;
-    Scene           scene;
-    double          proper_time; /* since the first frame */
-    Slot            slots[JOBS];
-    Video           video;
+    const char *scene, *output, *video_file;
+    uint32_t    frames, size[2];
+    int32_t     backend;
+    int         clock, help;
+    double      rate; /* frames a second */
+    BhrContext *context;
+    BhrJob     *jobs[JOBS]; /* NULL: none is under way */
+    BhrImage    images[JOBS];
+    char        clocks[JOBS][96];
+    Video       video;
 } Film;
 
-/* ---- the fall ---- */
-
-/* Proper time from r to the centre, falling from rest at infinity: (2/3) sqrt(r^3 / 2). */
-static double time_left(double radius) {
-    return 2.0 / 3.0 * sqrt(0.5 * radius * radius * radius);
-}
-
-/* The look where it differs from the library's, before the options. */
-static void begin_look(Scene *scene) {
-    scene->disk.outer_radius = 16.0;
-    scene->disk.turbulence = 0.8;
-    scene->film.exposure_ev = -1.5;
-    scene->film.tone_map = BHR_TONE_MAP_AGX;
-    scene->film.bloom = 0.15;
-}
-
-static BhrStatus begin_fall(Scene *scene, const Settings *s) {
-    *scene = s->input->scene;
-    BhrStatus status = bhr_camera_orbit(&scene->camera, s->from, -0.5 * PI, s->elevation * PI / 180.0);
-    scene->camera.fov_y = s->fov * PI / 180.0;
-    scene->camera.motion = BHR_MOTION_FREE_FALL;
-    scene->camera.projection = s->projection;
-    scene->quality.samples_per_pixel = s->samples;
-    camera_make_orthonormal(&scene->camera);
-    camera_turn(&scene->camera, s->look == LOOK_OUT ? PI : s->look == LOOK_SIDE ? -0.5 * PI : 0.0, 0.0);
-    return status;
-}
-
-/* On to the next frame. What the library says went by is added to the scene's time, outside the horizon and inside: so
- * the disk is seen at its retarded time all the way. */
-static BhrStatus fall_on(Film *film, double proper_time) {
-    double    elapsed;
-    BhrStatus status = bhr_camera_advance(film->context, &film->scene.camera, proper_time, &elapsed);
-    if (status >= 0) {
-        film->proper_time += proper_time;
-        film->scene.time += elapsed;
-    }
-    return status;
-}
-
-/* ---- frames ---- */
-
-static void write_clock(Slot *slot) {
-    char     text[96];
-    uint32_t scale = slot->image.width / 480 > 1 ? slot->image.width / 480 : 1; /* the text is 300 wide at 1 */
-    snprintf(text, sizeof text, "tau = %.2f M   r = %.2f M%s", slot->proper_time, slot->radius,
-             slot->radius < HORIZON ? "   inside the horizon" : "");
-    picture_write(&slot->image, 4 * scale, slot->image.height - CELL_HEIGHT * scale, scale, text);
-}
-
-/* Waits for the slot's frame and puts it where the film goes. 1, or 0 after a message. */
-static int finish(Film *film, Slot *slot) {
-    const Settings *s = film->settings;
-    BhrStatus       status = bhr_job_wait(slot->job, UINT64_MAX, NULL);
-    if (status < 0) {
-        report_failure("render a frame", status);
-        return 0;
-    }
-    bhr_job_destroy(slot->job);
-    slot->job = NULL;
-    if (!s->no_clock) {
-        write_clock(slot);
-    }
-    if (is_terminal(stderr)) {
-        fprintf(stderr, "\rframe %u of %u", (unsigned)slot->number + 1, (unsigned)s->frames);
-    }
-    if (s->video != NULL) {
-        return video_add(&film->video, &slot->image);
-    }
-    char name[32];
-    snprintf(name, sizeof name, "frame-%05u.png", (unsigned)slot->number);
-    return picture_save_into(&slot->image, s->output, name);
-}
-
-/* Begins the frame of the scene as it is now. 1, or 0 after a message. */
-static int begin(Film *film, Slot *slot, uint32_t number) {
-    BhrStatus status = scene_apply(&film->scene, film->context);
-    if (status >= 0) {
-        status = bhr_render_image_async(film->context, &slot->image, &slot->job);
-    }
-    if (status < 0) {
-        report_failure("begin a frame", status);
-        return 0;
-    }
-    slot->number = number;
-    slot->proper_time = film->proper_time;
-    slot->radius = length(film->scene.camera.position);
-    return 1;
-}
-
-/* 1, or 0 after a message. */
-static int make_frames(Film *film) {
-    const Settings *s = film->settings;
-    double          step = s->frames > 1 ? (time_left(s->from) - time_left(s->to)) / (s->frames - 1) : 0.0;
-    for (uint32_t i = 0; i < s->frames; i++) {
-        Slot     *slot = &film->slots[i % JOBS];
-        BhrStatus status = i > 0 ? fall_on(film, step) : BHR_OK;
-        if (status < 0) {
-            report_failure("fall on", status);
-            return 0;
-        }
-        if ((slot->job != NULL && !finish(film, slot)) || !begin(film, slot, i)) {
-            return 0;
-        }
-    }
-    for (uint32_t i = s->frames; i < s->frames + JOBS; i++) { /* the last ones, in their order */
-        Slot *slot = &film->slots[i % JOBS];
-        if (slot->job != NULL && !finish(film, slot)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* ---- the film ---- */
-
-/* 1, or 0 after a message. */
-static int prepare(Film *film) {
-    const Settings *s = film->settings;
-    for (int i = 0; i < JOBS; i++) {
-        if (!picture_allocate(&film->slots[i].image, BHR_FORMAT_RGBA8_SRGB, s->size[0], s->size[1])) {
-            return 0;
-        }
-    }
-    BhrStatus status = create_context_on(s->backend, &film->context);
-    if (status >= 0 && scene_input_finish(s->input, film->context, s->options, s->argc, s->argv) != 0) {
-        return 0;
-    }
-    if (status >= 0) {
-        status = begin_fall(&film->scene, s);
-    }
-    if (status >= 0) {
-        status = scene_apply(&film->scene, film->context);
-    }
-    if (status < 0) {
-        report_failure("prepare the film", status);
-    }
-    return status >= 0;
-}
-
-/* 1, or 0 after a message. */
-static int make_film(Film *film) {
-    const Settings *s = film->settings;
-    if (s->video != NULL) {
-        if (!video_open(&film->video, s->video, s->size[0], s->size[1], s->rate)) {
-            return 0;
-        }
-        int made = make_frames(film);
-        return video_close(&film->video) && made;
-    }
-    if (!make_folder(s->output) && errno != EEXIST) {
-        fprintf(stderr, "cannot make the folder %s: %s\n", s->output, strerror(errno));
-        return 0;
-    }
-    return make_frames(film);
-}
-
-/* Jobs first: until then the pixels are theirs. */
-static void give_back(Film *film) {
-    for (int i = 0; i < JOBS; i++) {
-        bhr_job_destroy(film->slots[i].job);
-    }
-    bhr_context_destroy(film->context);
-    for (int i = 0; i < JOBS; i++) {
-        free(film->slots[i].image.pixels);
-    }
-}
-
-/* An exit status. */
-static int film_fall(const Settings *s) {
-    Film   film = {.settings = s};
-    double start = wall_seconds();
-    int    made = prepare(&film) && make_film(&film);
-    give_back(&film);
-    if (is_terminal(stderr)) {
-        fputc('\n', stderr);
-    }
-    if (!made) {
+/* Reads the scene, and makes room for its pictures. 0, or an exit status after a message. */
+static int prepare(Film *f) {
+    char     path[MOST_PATH];
+    uint32_t size[2], frames;
+    if (f->scene == NULL && !scene_file_path(NULL, "fall", path)) {
         return EXIT_FAILURE;
     }
-    printf("%u frame%s of %u x %u in %.1f s: %s%s\n", (unsigned)s->frames, s->frames == 1 ? "" : "s",
-           (unsigned)s->size[0], (unsigned)s->size[1], wall_seconds() - start, s->video != NULL ? s->video : s->output,
-           s->video != NULL ? "" : "/frame-00000.png and on");
-    return EXIT_SUCCESS;
-}
-
-/* ---- command line ---- */
-
-/* 1 when it is in the range; else 0 after a message. */
-static int in_range(const char *option, double value, double least, double most) {
-    if (value >= least && value <= most) {
-        return 1;
+    BhrStatus status = create_context_on(f->backend, &f->context);
+    if (status >= 0) {
+        status = bhr_scene_load_file(f->context, f->scene != NULL ? f->scene : path);
     }
-    fprintf(stderr, "film: %s is %g; it must be %g to %g\n", option, value, least, most);
-    return 0;
-}
-
-/* 0, or EXIT_USAGE after a message. What is not checked here the library checks. */
-static int check(const Settings *s) {
-    if (!in_range("--frames", s->frames, 1.0, MOST_FRAMES) || !in_range("--fps", s->rate, 1.0, MOST_RATE) ||
-        !in_range("--to", s->to, LEAST_RADIUS, MOST_RADIUS) || !in_range("--from", s->from, s->to, MOST_RADIUS)) {
-        return EXIT_USAGE;
+    if (status >= 0) {
+        status = bhr_scene_pictures(f->context, &size[0], &size[1], &frames, &f->rate);
     }
-    if (s->video != NULL && (s->size[0] % 2 != 0 || s->size[1] % 2 != 0)) {
-        fprintf(stderr, "film: --size is %ux%u; a video's width and height must be even\n", (unsigned)s->size[0],
-                (unsigned)s->size[1]);
-        return EXIT_USAGE;
-    }
-    return 0;
-}
-
-static int run(int argc, char **argv) {
-    SceneInput input;
-    Options    options = {.count = 0};
-    Settings   s = {.input = &input, .options = &options, .argc = argc, .argv = argv, .output = "film-out",
-                    .frames = 240, .rate = 24, .size = {640, 360}, .samples = 4, .from = 12.0, .to = 0.05,
-                    .elevation = 20.0, .fov = 100.0, .look = LOOK_IN, .projection = BHR_PROJECTION_PERSPECTIVE,
-                    .backend = BHR_BACKEND_AUTO};
-    const Option own[] = {
-        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
-        {"--video", OPTION_TEXT, &s.video, "FILE", "a video instead of pictures, by ffmpeg; overwritten", NULL, NULL},
-        {"--frames", OPTION_UINT, &s.frames, "N", "evenly spaced in proper time", NULL, "1 to 99999"},
-        {"--fps", OPTION_UINT, &s.rate, "N", "frames per second of the video", NULL, "1 to 1000"},
-        {"--size", OPTION_SIZE, s.size, "WxH", "pixels", NULL, NULL},
-        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel", NULL, "1 to 256"},
-        {"--from", OPTION_DOUBLE, &s.from, "R", "the first frame's radius in M", NULL, NULL},
-        {"--to", OPTION_DOUBLE, &s.to, "R", "the last frame's radius in M", NULL, NULL},
-        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane", NULL, NULL},
-        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view", NULL, NULL},
-        {"--projection", OPTION_CHOICE, &s.projection, NULL, "fisheye for domes", PROJECTIONS, NULL},
-        {"--look", OPTION_CHOICE, &s.look, NULL, "to the hole, from it, or across", LOOKS, NULL},
-        {"--no-clock", OPTION_FLAG, &s.no_clock, NULL, "writes no proper time and radius into the picture", NULL, NULL},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
-    };
-    BhrStatus status = scene_input_init(&input);
     if (status < 0) {
-        return report_failure("begin", status);
+        return report_failure("play the scene", status);
     }
-    begin_look(&input.scene);
-    options_add(&options, own, COUNT_OF(own));
-    options_add_scene(&options, &input,
-                      SCENE_PRESET | SCENE_LENS | SCENE_EYES | SCENE_DISK | SCENE_MATTER | SCENE_SKY | SCENE_FILM |
-                          SCENE_EFFECTS);
-    int result = options_parse(options.list, options.count, argc, argv);
-    if (result != 0) {
-        return result;
+    memcpy(f->size, f->size[0] == AS_SCENE ? size : f->size, sizeof size);
+    f->frames = f->frames == AS_SCENE ? frames : f->frames;
+    f->rate = f->frames == frames ? f->rate : f->rate * f->frames / frames; /* of any number, over the same time */
+    if (f->frames < 1 || f->frames > MOST_FRAMES) {
+        fprintf(stderr, "film: %u frames are asked for; it must be 1 to %u\n", f->frames, MOST_FRAMES);
+        return EXIT_USAGE;
     }
-    if (s.help) {
-        printf("Usage: film [options]\nA fall into a black hole, as numbered pictures or as a video.\n\n");
-        options_print(stdout, options.list, options.count);
-        return EXIT_SUCCESS;
+    if (f->video_file != NULL && (f->size[0] % 2 != 0 || f->size[1] % 2 != 0)) {
+        fprintf(stderr, "film: the size is %ux%u; a video's must be even\n", f->size[0], f->size[1]);
+        return EXIT_USAGE;
     }
-    result = check(&s);
-    return result != 0 ? result : film_fall(&s);
+    int held = 1;
+    for (int i = 0; held && i < JOBS; i++) {
+        held = picture_allocate(&f->images[i], BHR_FORMAT_RGBA8_SRGB, f->size[0], f->size[1]);
+    }
+    return held ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/* Begins a frame, which has a job and a picture of its own. 1, or 0 after a message. */
+static int begin(Film *f, uint32_t frame) {
+    BhrHoleInfo info;
+    BHR_INIT(info);
+    const double seconds = frame / f->rate;
+    BhrStatus    status = bhr_scene_at(f->context, seconds);
+    if (status >= 0) {
+        status = bhr_hole_info(f->context, &info);
+    }
+    if (status >= 0) { /* M is half of the ergosphere's radius */
+        snprintf(f->clocks[frame % JOBS], sizeof f->clocks[0], "t = %.2f s   r = %.2f M%s", seconds,
+                 2.0 * info.camera_radius / info.ergosphere_equatorial_radius,
+                 info.camera_radius < info.horizon_radius ? "   inside the horizon" : "");
+        status = bhr_render_image_async(f->context, &f->images[frame % JOBS], &f->jobs[frame % JOBS]);
+    }
+    return status >= 0 || !report_failure("begin a frame", status);
+}
+
+/* Waits for a frame, and puts it where the film goes. 1, or 0 after a message. */
+static int finish(Film *f, uint32_t frame) {
+    BhrImage *image = &f->images[frame % JOBS];
+    BhrStatus status = bhr_job_wait(f->jobs[frame % JOBS], UINT64_MAX, NULL);
+    bhr_job_destroy(f->jobs[frame % JOBS]);
+    f->jobs[frame % JOBS] = NULL;
+    if (status < 0) {
+        return !report_failure("render a frame", status);
+    }
+    if (f->clock) {
+        const uint32_t scale = image->width < 960 ? 1 : image->width / 480; /* the text is 300 wide at 1 */
+        picture_write(image, 4 * scale, image->height - CELL_HEIGHT * scale, scale, f->clocks[frame % JOBS]);
+    }
+    char name[24];
+    snprintf(name, sizeof name, "frame-%05u.png", (unsigned)frame);
+    return f->video_file != NULL ? video_add(&f->video, image) : picture_save_into(image, f->output, name);
+}
+
+/* 1, or 0 after a message. */
+static int make(Film *f) {
+    int made = 1;
+    if (f->video_file != NULL && !video_open(&f->video, f->video_file, f->size[0], f->size[1], f->rate)) {
+        return 0;
+    }
+    if (f->video_file == NULL && !make_folder(f->output) && errno != EEXIST) {
+        fprintf(stderr, "cannot make the folder %s: %s\n", f->output, strerror(errno));
+        return 0;
+    }
+    Progress progress = progress_begin(is_terminal(stderr));
+    for (uint32_t i = 0; made && i < f->frames + JOBS; i++) { /* at last there are those under way */
+        made = (i < JOBS || i - JOBS >= f->frames || finish(f, i - JOBS)) && (i >= f->frames || begin(f, i));
+        progress_draw(&progress, (double)i / (f->frames + JOBS));
+    }
+    progress_clear(&progress);
+    made = (f->video_file == NULL || video_close(&f->video)) && made;
+    if (made) {
+        printf("%u frames: %s\n", f->frames, f->video_file != NULL ? f->video_file : f->output);
+    }
+    return made;
 }
 
 int main(int argc, char **argv) {
-    return end_output(run(argc, argv));
+    Film         f = {.output = "film-out", .frames = AS_SCENE, .size = {AS_SCENE, AS_SCENE}}; /* BACKEND_AUTO is 0 */
+    const Option options[] = {
+        {"--scene", OPTION_TEXT, &f.scene, "FILE", "what to play; else fall.toml: a fall into a hole", NULL, NULL},
+        {"--output", OPTION_TEXT, &f.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
+        {"--video", OPTION_TEXT, &f.video_file, "FILE", "a video instead, by ffmpeg; overwritten", NULL, NULL},
+        {"--frames", OPTION_UINT, &f.frames, "N", "over the same time, in place of the scene's", NULL, "1 to 99999"},
+        {"--size", OPTION_SIZE, f.size, "WxH", "pixels, in place of the scene's", NULL, NULL},
+        {"--clock", OPTION_FLAG, &f.clock, NULL, "writes the time and the radius into the picture", NULL, NULL},
+        {"--backend", OPTION_CHOICE, &f.backend, NULL, "what traces the light", BACKENDS, NULL},
+        {"--help", OPTION_FLAG, &f.help, NULL, "this text", NULL, NULL},
+    };
+    int result = options_parse(options, COUNT_OF(options), argc, argv);
+    if (result == 0 && f.help) {
+        printf("Usage: film [options]\nPlays a scene file, into numbered pictures or into a video.\n\n");
+        options_print(stdout, options, COUNT_OF(options));
+    } else if (result == 0) {
+        result = prepare(&f);
+        result = result == 0 && !make(&f) ? EXIT_FAILURE : result;
+        for (int i = 0; i < JOBS; i++) { /* jobs first: until then the pixels are theirs */
+            bhr_job_destroy(f.jobs[i]);
+            free(f.images[i].pixels);
+        }
+        bhr_context_destroy(f.context);
+    }
+    return end_output(result);
 }

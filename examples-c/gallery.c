@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* gallery.c -- named scenes (gallery_scenes.c) into PNG files, and a contact sheet of them: what the renderer can
+/* gallery.c -- scene files (examples-c/scenes) into PNG files, and a contact sheet of them: what the renderer can
  * show. */
-#include "gallery_scenes.h"
 #include "options.h"
 #include "picture.h"
-#include "scene.h"
+#include "scene_files.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -18,6 +17,16 @@
 #define SHEET_GREY 40      /* of 255 */
 #define LEAST_WIDTH 16u    /* of a picture: of shape 16 : 9 that is 9 rows */
 #define MOST_WIDTH 16384u
+#define NO_PRESET (-1) /* each scene's own look */
+#define OWN_SAMPLES UINT32_MAX
+
+/* The scenes in the order of the contact sheet; what each is, its file says. */
+static const char *const EXHIBITS[] = {
+    "cinematic", "physical", "observatory", "teaching", "schwarzschild-edge-on", "schwarzschild-face-on", "kerr-0.998",
+    "translucent", "orion", "einstein-ring", "galactic-centre", "grid", "fall-4", "fall-2.5", "fall-1.5",
+    "orbiting-observer", "dome-master", "equirect", "cube", "soft-disk", "torus", "halo", "jet", "hot-spot",
+    "inside-the-torus", "view-redshift", "view-order", "view-deflection", "view-steps", "view-metric",
+};
 
 /* ---- the contact sheet ---- */
 
@@ -29,7 +38,7 @@ typedef struct Sheet {
 
 /* 1, or 0 after a message. */
 static int sheet_begin(Sheet *sheet, uint32_t width) {
-    const uint32_t rows = ((uint32_t)EXHIBIT_COUNT + SHEET_COLUMNS - 1) / SHEET_COLUMNS;
+    const uint32_t rows = ((uint32_t)COUNT_OF(EXHIBITS) + SHEET_COLUMNS - 1) / SHEET_COLUMNS;
     sheet->cell[0] = width < LEAST_CELL ? LEAST_CELL : width > MOST_CELL ? MOST_CELL : width;
     sheet->cell[1] = sheet->cell[0] * 9 / 16;
     sheet->shown = 0;
@@ -62,53 +71,84 @@ static void sheet_add(Sheet *sheet, const BhrImage *picture, const char *name) {
 /* ---- pictures ---- */
 
 typedef struct Settings {
+    const char *scenes; /* NULL: where the program finds them */
     const char *output;
     const char *only; /* NULL: all scenes */
     uint32_t    width, samples;
-    int32_t     backend, preset; /* BHR_PRESET_*; NO_PRESET: each scene's own look */
+    int32_t     backend, preset;
     int         list, help;
 } Settings;
 
-/* 1, or 0 after a message. */
-static int set_scene(BhrContext *context, const Settings *s, const Exhibit *exhibit) {
-    Scene     scene;
-    BhrStatus status = scene_init(&scene, &GALLERY_BEGINNING);
+/* This look in place of the scene's own; a scene without a disk gets none. */
+static BhrStatus set_preset(BhrContext *context, BhrPreset preset) {
+    BhrDisk disk;
+    BHR_INIT(disk);
+    int32_t   has_disk;
+    BhrStatus status = bhr_get_disk(context, &disk, &has_disk);
     if (status >= 0) {
-        scene.quality.samples_per_pixel = s->samples;
-        status = scene_set_preset(&scene, context, exhibit->look);
+        status = bhr_set_preset(context, preset);
     }
+    return status >= 0 && !has_disk ? bhr_set_disk(context, NULL) : status;
+}
+
+static BhrStatus set_samples(BhrContext *context, uint32_t samples) {
+    BhrQuality quality;
+    BHR_INIT(quality);
+    BhrStatus status = bhr_get_quality(context, &quality);
+    quality.samples_per_pixel = samples;
+    return status >= 0 ? bhr_set_quality(context, &quality) : status;
+}
+
+/* The largest whole number that divides both. */
+static uint32_t common_divisor(uint32_t a, uint32_t b) {
+    while (b != 0) {
+        const uint32_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Sets the scene, and *size to the picture that it asks for, shrunk to exactly its shape: a cube must be six squares.
+ * 1, or 0 after a message. */
+static int set_scene(BhrContext *context, const Settings *s, const char *name, uint32_t size[2]) {
+    char path[MOST_PATH];
+    if (!scene_file_path(s->scenes, name, path)) {
+        return 0;
+    }
+    BhrStatus status = bhr_scene_load_file(context, path);
     if (status >= 0) {
-        status = exhibit->describe(&scene);
+        status = bhr_scene_pictures(context, &size[0], &size[1], NULL, NULL);
     }
     if (status >= 0 && s->preset != NO_PRESET) {
-        const int has_disk = scene.has_disk;
-        status = scene_set_preset(&scene, context, s->preset);
-        scene.has_disk = has_disk;
+        status = set_preset(context, s->preset);
     }
-    if (status >= 0) {
-        status = scene_apply(&scene, context);
+    if (status >= 0 && s->samples != OWN_SAMPLES) {
+        status = set_samples(context, s->samples);
     }
     if (status < 0) {
-        fprintf(stderr, "%s: ", exhibit->name);
+        fprintf(stderr, "%s: ", name);
         report_failure("set the scene", status);
+        return 0;
     }
-    return status >= 0;
+    const uint32_t divisor = common_divisor(size[0], size[1]), columns = size[0] / divisor, rows = size[1] / divisor;
+    const uint32_t unit = s->width > columns ? s->width / columns : 1;
+    size[0] = unit * columns;
+    size[1] = unit * rows;
+    return 1;
 }
 
 /* Renders into the picture and saves it. 1, or 0 after a message. */
-static int render(BhrContext *context, const Settings *s, const Exhibit *exhibit, const BhrImage *picture) {
-    char   name[64];
-    double begin = wall_seconds();
-    if (!set_scene(context, s, exhibit)) {
-        return 0;
-    }
+static int render(BhrContext *context, const Settings *s, const char *scene, const BhrImage *picture) {
+    char      name[64];
+    double    begin = wall_seconds();
     BhrStatus status = bhr_render_image(context, picture);
     if (status < 0) {
-        fprintf(stderr, "%s: ", exhibit->name);
+        fprintf(stderr, "%s: ", scene);
         report_failure("render", status);
         return 0;
     }
-    snprintf(name, sizeof name, "%s.png", exhibit->name);
+    snprintf(name, sizeof name, "%s.png", scene);
     if (!picture_save_into(picture, s->output, name)) {
         return 0;
     }
@@ -119,15 +159,15 @@ static int render(BhrContext *context, const Settings *s, const Exhibit *exhibit
 }
 
 /* Renders one scene, and puts it on the sheet unless that is NULL. 1, or 0 after a message. */
-static int make_picture(BhrContext *context, const Settings *s, const Exhibit *exhibit, Sheet *sheet) {
-    BhrImage       picture;
-    const uint32_t unit = s->width / exhibit->shape[0]; /* exactly that shape: a cube must be six squares */
-    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, unit * exhibit->shape[0], unit * exhibit->shape[1])) {
+static int make_picture(BhrContext *context, const Settings *s, const char *scene, Sheet *sheet) {
+    BhrImage picture;
+    uint32_t size[2];
+    if (!set_scene(context, s, scene, size) || !picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, size[0], size[1])) {
         return 0;
     }
-    int made = render(context, s, exhibit, &picture);
+    int made = render(context, s, scene, &picture);
     if (made && sheet != NULL) {
-        sheet_add(sheet, &picture, exhibit->name);
+        sheet_add(sheet, &picture, scene);
     }
     free(picture.pixels);
     return made;
@@ -139,8 +179,8 @@ static int make_all(BhrContext *context, const Settings *s) {
         return 0;
     }
     int made = 1;
-    for (size_t i = 0; made && i < EXHIBIT_COUNT; i++) {
-        made = make_picture(context, s, &EXHIBITS[i], &sheet);
+    for (size_t i = 0; made && i < COUNT_OF(EXHIBITS); i++) {
+        made = make_picture(context, s, EXHIBITS[i], &sheet);
     }
     made = made && picture_save_into(&sheet.image, s->output, SHEET);
     free(sheet.image.pixels);
@@ -150,13 +190,13 @@ static int make_all(BhrContext *context, const Settings *s) {
     return made;
 }
 
-static const Exhibit *find_exhibit(const char *name) {
-    for (size_t i = 0; i < EXHIBIT_COUNT; i++) {
-        if (strcmp(EXHIBITS[i].name, name) == 0) {
-            return &EXHIBITS[i];
+static int is_exhibit(const char *name) {
+    for (size_t i = 0; i < COUNT_OF(EXHIBITS); i++) {
+        if (strcmp(EXHIBITS[i], name) == 0) {
+            return 1;
         }
     }
-    return NULL;
+    return 0;
 }
 
 /* An exit status. */
@@ -170,17 +210,23 @@ static int make_pictures(const Settings *s) {
     if (status < 0) {
         return report_failure("create a context", status);
     }
-    int made = s->only != NULL ? make_picture(context, s, find_exhibit(s->only), NULL) : make_all(context, s);
+    int made = s->only != NULL ? make_picture(context, s, s->only, NULL) : make_all(context, s);
     bhr_context_destroy(context);
     return made ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 /* ---- command line ---- */
 
-static void list_exhibits(void) {
-    for (size_t i = 0; i < EXHIBIT_COUNT; i++) {
-        printf("%-22s %s\n", EXHIBITS[i].name, EXHIBITS[i].about);
+/* Each with what its file says. An exit status. */
+static int list_exhibits(const Settings *s) {
+    char path[MOST_PATH], about[MOST_ABOUT];
+    for (size_t i = 0; i < COUNT_OF(EXHIBITS); i++) {
+        if (!scene_file_path(s->scenes, EXHIBITS[i], path) || !scene_file_about(path, about)) {
+            return EXIT_FAILURE;
+        }
+        printf("%-22s %s\n", EXHIBITS[i], about);
     }
+    return EXIT_SUCCESS;
 }
 
 /* 0, or EXIT_USAGE after a message. */
@@ -190,7 +236,7 @@ static int check(const char *program, const Settings *s) {
                 MOST_WIDTH);
         return EXIT_USAGE;
     }
-    if (s->only != NULL && find_exhibit(s->only) == NULL) {
+    if (s->only != NULL && !is_exhibit(s->only)) {
         fprintf(stderr, "%s: there is no scene '%s'; --list shows them\n", program, s->only);
         return EXIT_USAGE;
     }
@@ -198,14 +244,15 @@ static int check(const char *program, const Settings *s) {
 }
 
 static int run(int argc, char **argv) {
-    Settings     s = {.output = "gallery-out", .width = 960, .samples = 8, .backend = BHR_BACKEND_AUTO,
+    Settings     s = {.output = "gallery-out", .width = 960, .samples = OWN_SAMPLES, .backend = BHR_BACKEND_AUTO,
                       .preset = NO_PRESET};
     const Option options[] = {
+        {"--scenes", OPTION_TEXT, &s.scenes, "FOLDER", "of the scene files; " SCENES_DEFAULT, NULL, NULL},
         {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
         {"--only", OPTION_TEXT, &s.only, "NAME", "this scene alone, and no contact sheet", NULL, NULL},
         {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, to fit the shape", NULL, NULL},
         {"--preset", OPTION_CHOICE, &s.preset, NULL, "this look for all scenes, instead of their own", PRESETS, NULL},
-        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256", NULL, NULL},
+        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256, instead of each scene's own", NULL, NULL},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
         {"--list", OPTION_FLAG, &s.list, NULL, "names the scenes", NULL, NULL},
         {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
@@ -215,13 +262,12 @@ static int run(int argc, char **argv) {
         return result;
     }
     if (s.help) {
-        printf("Usage: gallery [options]\nRenders named scenes into PNG files, and a contact sheet, " SHEET ".\n\n");
+        printf("Usage: gallery [options]\nRenders scene files into PNG files, and a contact sheet, " SHEET ".\n\n");
         options_print(stdout, options, COUNT_OF(options));
         return EXIT_SUCCESS;
     }
     if (s.list) {
-        list_exhibits();
-        return EXIT_SUCCESS;
+        return list_exhibits(&s);
     }
     result = check(argv[0], &s);
     return result != 0 ? result : make_pictures(&s);

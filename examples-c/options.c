@@ -268,7 +268,9 @@ static void print_default(FILE *out, const Option *option) {
         fprintf(out, "; default %llu", (unsigned long long)*(const uint64_t *)option->target);
         return;
     case OPTION_SIZE:
-        fprintf(out, "; default %ux%u", (unsigned)whole[0], (unsigned)whole[1]);
+        if (*whole != UINT32_MAX) {
+            fprintf(out, "; default %ux%u", (unsigned)whole[0], (unsigned)whole[1]);
+        }
         return;
     case OPTION_CHOICE:
         for (const Choice *choice = option->choices; choice->name != NULL; choice++) {

@@ -9,6 +9,7 @@
 //   panel/inspector    rays and the metric, asked at once     panel/metric_map   g_tt over a plane
 //   panel/app          the loop                               panel/steps_plot   integration steps
 //   panel/window       GLFW, OpenGL, Dear ImGui               panel/performance  how fast frames come
+//   panel/files        scene files, undo and redo             panel/history      the texts for that
 #include "options.h"
 #include "panel/app.h"
 
@@ -72,7 +73,8 @@ int main(int argc, char **argv) {
     if (help != 0) {
         std::puts("Usage: panel [options]\n"
                   "A black hole to look at, set and measure. Drag: about the hole; wheel: nearer;\n"
-                  "click: the pixel's ray; Ctrl and a click on a slider: type a number; Escape: end.\n");
+                  "click: the pixel's ray; Ctrl and a click on a slider: type a number; Ctrl-Z, Ctrl-Y:\n"
+                  "undo and redo; Escape: end.\n");
         options_print(stdout, table, COUNT_OF(table));
         return EXIT_SUCCESS;
     }

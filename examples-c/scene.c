@@ -52,16 +52,6 @@ void scene_begin(Scene *scene, const SceneOptions *options) {
     scene->camera.fov_y = options->fov * PI / 180.0;
 }
 
-BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
-    BhrStatus status = scene_defaults(scene);
-    if (status < 0) {
-        return status;
-    }
-    scene_begin(scene, options);
-    return bhr_camera_orbit(&scene->camera, options->distance * options->mass, options->azimuth * PI / 180.0,
-                            options->elevation * PI / 180.0);
-}
-
 /* Disk, sky, film and effects, as the context has them. */
 static BhrStatus read_look(Scene *scene, BhrContext *context) {
     int32_t   present;
@@ -77,11 +67,6 @@ static BhrStatus read_look(Scene *scene, BhrContext *context) {
     return status >= 0 ? bhr_get_effects(context, &scene->effects) : status;
 }
 
-BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) {
-    const BhrStatus status = bhr_set_preset(context, preset);
-    return status >= 0 ? read_look(scene, context) : status;
-}
-
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                 BhrPresetMatter *out_matter) {
     BhrStatus status = bhr_set_preset_with(context, preset, options, out_matter);
@@ -89,6 +74,39 @@ BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset pre
         status = bhr_get_volumes(context, scene->volumes, sizeof(BhrVolume), BHR_MAX_VOLUMES, &scene->volume_count);
     }
     return status >= 0 ? read_look(scene, context) : status;
+}
+
+static BhrStatus read_matter(Scene *scene, BhrContext *context) {
+    BhrStatus status =
+        bhr_get_volumes(context, scene->volumes, sizeof *scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
+    if (status >= 0) {
+        status = bhr_get_hot_spots(context, scene->hot_spots, sizeof *scene->hot_spots, BHR_MAX_HOT_SPOTS,
+                                   &scene->hot_spot_count);
+    }
+    return status;
+}
+
+BhrStatus scene_read(Scene *scene, BhrContext *context) {
+    BhrStatus status = scene_defaults(scene); /* structs that are read into say their size */
+    if (status >= 0) {
+        status = bhr_get_hole(context, &scene->mass, &scene->spin, scene->axis);
+    }
+    if (status >= 0) {
+        status = bhr_get_time(context, &scene->time);
+    }
+    if (status >= 0) {
+        status = bhr_get_camera(context, &scene->camera);
+    }
+    if (status >= 0) {
+        status = read_matter(scene, context);
+    }
+    if (status >= 0) {
+        status = read_look(scene, context);
+    }
+    if (status >= 0) {
+        status = bhr_get_view(context, &scene->view);
+    }
+    return status >= 0 ? bhr_get_quality(context, &scene->quality) : status;
 }
 
 BhrStatus scene_apply(const Scene *scene, BhrContext *context) {

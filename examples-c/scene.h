@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* scene.h -- everything that a frame of viewer, gallery or film shows, as plain values that are copied to try a change
+/* scene.h -- everything that a frame of viewer or render_frame shows, as plain values that are copied to try a change
  * and thrown away when bhr refuses it. Knows no window and no input. */
 #ifndef EXAMPLES_SCENE_H
 #define EXAMPLES_SCENE_H
@@ -45,16 +45,13 @@ BhrStatus scene_defaults(Scene *scene);
 /* Lays a program's beginning over them, without the camera's place. */
 void scene_begin(Scene *scene, const SceneOptions *options);
 
-/* Both, and the camera's place. Errors: as the library's. */
-BhrStatus scene_init(Scene *scene, const SceneOptions *options);
-
-/* The look alone, disk, sky, film and effects, of a preset, as the context has it then. Errors: as the library's. */
-BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset);
-
-/* The look with its volumes: `options` ask for its matter (bhr_set_preset_with); *out_matter is THIN or DEEP. Errors:
- * as the library's. */
+/* The look of a preset, disk, volumes, sky, film and effects, as the context has it then: `options` ask for its matter
+ * (bhr_set_preset_with); *out_matter is THIN or DEEP. Errors: as the library's. */
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
                                 BhrPresetMatter *out_matter);
+
+/* All of it as the context has it. Errors: as the library's. */
+BhrStatus scene_read(Scene *scene, BhrContext *context);
 
 /* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
 BhrStatus scene_apply(const Scene *scene, BhrContext *context);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* scene_options.h -- the options for everything that a scene has, in one table that render_frame, film and viewer
- * share: each says which of its groups it takes. Knows no window and makes no frame. */
+/* scene_options.h -- the options for everything that a scene has, in one table that render_frame and viewer share:
+ * each says which of its groups it takes. Knows no window and makes no frame. */
 #ifndef EXAMPLES_SCENE_OPTIONS_H
 #define EXAMPLES_SCENE_OPTIONS_H
 

@@ -10,7 +10,7 @@
 
 #ifdef _WIN32
 
-int video_open(Video *video, const char *path, uint32_t width, uint32_t height, uint32_t rate) {
+int video_open(Video *video, const char *path, uint32_t width, uint32_t height, double rate) {
     (void)video, (void)path, (void)width, (void)height, (void)rate;
     fprintf(stderr, "cannot make a video: not on Windows; make pictures, and a video of them by ffmpeg\n");
     return 0;
@@ -90,8 +90,8 @@ static int start_with_pipe(Video *video, char *const arguments[]) {
     return 0;
 }
 
-int video_open(Video *video, const char *path, uint32_t width, uint32_t height, uint32_t rate) {
-    char   frame_size[32], frame_rate[16];
+int video_open(Video *video, const char *path, uint32_t width, uint32_t height, double rate) {
+    char   frame_size[32], frame_rate[32];
     size_t length = strlen(path) + sizeof "file:";
     char  *file = malloc(length);
     if (file == NULL) {
@@ -99,7 +99,7 @@ int video_open(Video *video, const char *path, uint32_t width, uint32_t height, 
         return 0;
     }
     snprintf(frame_size, sizeof frame_size, "%ux%u", (unsigned)width, (unsigned)height);
-    snprintf(frame_rate, sizeof frame_rate, "%u", (unsigned)rate);
+    snprintf(frame_rate, sizeof frame_rate, "%.10g", rate);
     /* "file:" keeps ffmpeg from reading a protocol or an option into the name. Most players want 4:2:0; the primaries
      * of sRGB are those of Rec. 709. */
     snprintf(file, length, "file:%s", path);

@@ -13,7 +13,7 @@ typedef struct Video {
 
 /* Starts ffmpeg, which overwrites `path` with width x height frames (both even), `rate` of them a second; the ending of
  * the path decides the kind of file. 1, or 0 after a message, such as that there is no ffmpeg. */
-int video_open(Video *video, const char *path, uint32_t width, uint32_t height, uint32_t rate);
+int video_open(Video *video, const char *path, uint32_t width, uint32_t height, double rate);
 
 /* Adds a packed RGBA8_SRGB frame of the video's size. 1, or 0 after a message. */
 int video_add(Video *video, const BhrImage *image);

@@ -27,7 +27,7 @@ typedef struct Settings {
     int32_t        backend, present;
     uint32_t       frames;
     double         rate, hold;
-    const char    *screenshot;
+    const char    *scene, *screenshot;
     int            validation, verbose, help;
 } Settings;
 
@@ -184,6 +184,26 @@ void viewer_apply_for_picture(Viewer *v) {
     if (status < 0) {
         report_failure("prepare a picture", status); /* then it is as fine as the window is */
     }
+}
+
+BhrStatus viewer_load(Viewer *v, const char *path) {
+    Scene     scene;
+    BhrStatus status = bhr_scene_load_file(v->context, path);
+    if (status >= 0) {
+        status = scene_read(&scene, v->context);
+    }
+    if (status < 0) {
+        return status;
+    }
+    governor_take_resolution(&v->governor, v->context);
+    v->scene = v->first = scene;
+    pilot_stop(&v->pilot, scene.camera.motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : scene.camera.motion);
+    v->pilot.looked_away = 1; /* the view is the file's, too */
+    v->tried_view = scene.view;
+    v->tried_projection = scene.camera.projection;
+    v->preset = NO_PRESET;
+    v->matter = -1;
+    return BHR_OK;
 }
 
 /* Seconds until the display wants the next frame. Some displays, as one without a screen, do not hold frames back: what
@@ -402,6 +422,15 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->pilot.motion = motion;
     v->pilot.steered = 1;
     v->pace = FIRST_PACE;
+    v->scene_path = s->scene != NULL ? s->scene : SAVED_SCENE;
+    if (s->scene != NULL) {
+        status = viewer_load(v, s->scene);
+        if (status < 0) {
+            report_failure("load the scene", status);
+            return 0;
+        }
+        v->good = v->scene;
+    }
     if (s->frames != 0) { /* the same frames on every machine */
         v->most_frames = s->frames;
         v->fixed_step = MACHINE_STEP;
@@ -469,7 +498,10 @@ static int run(int argc, char **argv) {
     SceneInput   input;
     Options      options = {.count = 0};
     Settings     s = {.input = &input, .options = &options, .argc = argc, .argv = argv};
-    const Option first[] = {{"--size", OPTION_SIZE, s.size, "WxH", "of the window; 0x0: 1280x720", NULL, NULL}};
+    const Option first[] = {
+        {"--size", OPTION_SIZE, s.size, "WxH", "of the window; 0x0: 1280x720", NULL, NULL},
+        {"--scene", OPTION_TEXT, &s.scene, "FILE", "what to show (docs/scenes.md), without options of a scene", NULL,
+         NULL}};
     const Option last[] = {
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
         {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen", PRESENT_MODES, NULL},
@@ -494,6 +526,13 @@ static int run(int argc, char **argv) {
     options_add_scene(&options, &input, ALL_OF_SCENE & ~(SCENE_QUALITY | SCENE_EYES));
     options_add(&options, last, COUNT_OF(last));
     int result = options_parse(options.list, options.count, argc, argv);
+    if (result == 0 && s.scene != NULL) {
+        Options without = {.count = 0};
+        options_add(&without, first, COUNT_OF(first));
+        options_add(&without, last, COUNT_OF(last));
+        result = options_parse(without.list, without.count, argc, argv);
+        fputs(result != 0 ? "with --scene the file says all of the scene\n" : "", stderr);
+    }
     if (result != 0) {
         return result;
     }

@@ -11,6 +11,7 @@
 #include "viewer_quality.h"
 
 #define SAID 96
+#define SAVED_SCENE "viewer-scene.toml"
 #define FIRST_PACE 3.0 /* M per second: the disk's inner edge turns in half a minute */
 
 typedef struct Mouse {
@@ -40,6 +41,7 @@ typedef struct Viewer {
     int32_t tried_view, tried_projection, preset, matter; /* the cycling keys pass over what is refused */
     BhrPresetOptions preset_options;  /* the matter that presets have */
     BhrPresetMatter  preset_matter;   /* that this one has */
+    const char *scene_path; /* what the key loads: --scene, or the file that was saved last */
     char    said[SAID];  /* by the last key; printed when bhr has accepted the change */
 
     double   now;           /* wall_seconds() of this turn of the loop */
@@ -56,6 +58,10 @@ typedef struct Viewer {
     uint64_t most_frames;     /* 0: no limit */
     double   fixed_step;      /* seconds of every step; 0: the wall clock's */
 } Viewer;
+
+/* Shows the scene of a file, and begins there: what is asked for by keys begins anew. Errors: as the library's; then it
+ * shows what it did. */
+BhrStatus viewer_load(Viewer *viewer, const char *path);
 
 /* Readies the context for bhr_render_image: the scene of the window, not coarser than a picture to keep should be. */
 void viewer_apply_for_picture(Viewer *viewer);

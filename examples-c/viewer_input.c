@@ -242,6 +242,35 @@ static void reset(Viewer *v, double unused) {
     SAY(v, "back to the beginning");
 }
 
+/* Over the one that was saved before. The context may hold a coarser scene, for a frame while it moves. */
+static void save_scene(Viewer *v, double unused) {
+    (void)unused;
+    BhrStatus status = scene_apply(&v->scene, v->context);
+    if (status >= 0) {
+        status = bhr_scene_save_file(v->context, SAVED_SCENE);
+    }
+    if (status < 0) {
+        report_failure("save the scene", status);
+        return;
+    }
+    v->scene_path = SAVED_SCENE;
+    SAY(v, "scene saved: %s", SAVED_SCENE);
+}
+
+static void load_scene(Viewer *v, double unused) {
+    (void)unused;
+    uint32_t  frames = 1;
+    BhrStatus status = viewer_load(v, v->scene_path);
+    if (status >= 0) {
+        status = bhr_scene_pictures(v->context, NULL, NULL, &frames, NULL);
+    }
+    if (status < 0) {
+        report_failure("load the scene", status);
+        return;
+    }
+    SAY(v, "scene loaded: %.60s%s", v->scene_path, frames > 1 ? ", as a film begins" : "");
+}
+
 static void save_picture(Viewer *v, double unused) {
     (void)unused;
     if (v->size[0] != 0 && v->size[1] != 0) {
@@ -352,6 +381,8 @@ static const Key KEYS[] = {
     {GLFW_KEY_B, 1, NULL, "take fewer samples a pixel", change_samples, 0.5, 0},
     {GLFW_KEY_I, 0, NULL, "change the method of integration", cycle_method, 0, 0},
 
+    {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
+    {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, 0},
     {GLFW_KEY_F12, 0, "F12", "save a picture", save_picture, 0, 0},
     {GLFW_KEY_R, 0, NULL, "record pictures, and stop", toggle_recording, 0, 0},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},

@@ -111,6 +111,7 @@ missing_packages() {
     missing luajit luajit
     luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing doxygen doxygen
+    missing ffmpeg ffmpeg ffprobe
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }

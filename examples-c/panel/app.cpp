@@ -288,6 +288,8 @@ void App::draw(double now, Pixels *copy) {
     const uint64_t version = scene_.version();
     const Layout   layout = arrange(ImGui::GetIO().DisplaySize, ImGui::GetFontSize(), options_.bare != 0);
     Picture::Input input;
+    history_.before(scene_, ImGui::IsAnyItemActive() || ImGui::IsAnyMouseDown(), now);
+    files_.key(window_.shortcut(), scene_, history_);
     {
         char              news[96];
         const FixedWindow window("Picture", layout.picture, true);
@@ -304,6 +306,7 @@ void App::draw(double now, Pixels *copy) {
     if (layout.panels) {
         draw_panels(layout);
     }
+    history_.after(scene_, now);
     if (scene_.version() != version) {
         touched_at_ = now;
     }
@@ -320,6 +323,7 @@ void App::draw(double now, Pixels *copy) {
 void App::draw_panels(const Layout &layout) {
     {
         const FixedWindow window("Scene", layout.settings);
+        files_.draw(scene_, history_);
         settings_.draw(scene_, inspector_.numbers(), frame_settings_, clock_);
     }
     {
@@ -437,6 +441,10 @@ void App::say(const Picture::Input &input) {
         std::printf("matter volumes %zu hot spots %zu\n", volumes, spots);
         said_volumes_ = volumes;
         said_spots_ = spots;
+    }
+    if (files_.count() != said_files_) {
+        std::printf("file %s\n", files_.said().c_str());
+        said_files_ = files_.count();
     }
     if (settings_.refusals() != said_refusals_) {
         std::printf("refused %s\n", settings_.last_refusal().c_str());

@@ -4,6 +4,7 @@
 #ifndef PANEL_APP_H
 #define PANEL_APP_H
 
+#include "files.h"
 #include "inspector.h"
 #include "layout.h"
 #include "metric_map.h"
@@ -77,6 +78,8 @@ private:
     BhrAdapterInfo adapter_{};
     Picture        picture_;
     SettingsPanel  settings_;
+    History        history_;
+    FilesRow       files_;
     RayPanel       ray_panel_;
     MetricMap      metric_map_;
     StepsPlot      steps_plot_;
@@ -102,7 +105,7 @@ private:
 
     Wanted   said_place_; // what --verbose said last
     uint64_t said_geometry_ = 0;
-    size_t   said_refusals_ = 0;
+    size_t   said_refusals_ = 0, said_files_ = 0;
     size_t   said_volumes_ = 0, said_spots_ = 0;
     uint32_t said_pictures_ = 0;
 };

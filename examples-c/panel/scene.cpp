@@ -151,6 +151,13 @@ Result Scene::set_time(double time) {
     return result;
 }
 
+// The orbit on which a camera is there.
+static Orbit orbit_through(const double position[3]) {
+    const Vec3   place{position[0], position[1], position[2]};
+    const double distance = length(place);
+    return {distance, std::atan2(place.y, place.x), std::asin(std::clamp(place.z / distance, -1.0, 1.0))};
+}
+
 Result Scene::advance_camera(double proper_time) {
     BhrCamera    moved = camera_;
     double       coordinate_time = 0.0;
@@ -158,9 +165,43 @@ Result Scene::advance_camera(double proper_time) {
     if (!result.ok()) {
         return result;
     }
-    const Vec3   place{moved.position[0], moved.position[1], moved.position[2]};
-    const double distance = length(place);
-    const Result placed =
-        set_orbit({distance, std::atan2(place.y, place.x), std::asin(std::clamp(place.z / distance, -1.0, 1.0))});
+    const Result placed = set_orbit(orbit_through(moved.position));
     return placed.ok() ? set_time(time_ + coordinate_time) : placed;
+}
+
+Result Scene::save_text(std::string &out) const {
+    size_t    size = 0;
+    BhrStatus status = bhr_scene_save(context_, nullptr, 0, &size);
+    if (status >= 0) {
+        out.resize(size + 1);
+        status = bhr_scene_save(context_, out.data(), out.size(), &size);
+        out.resize(size);
+    }
+    return result_of(status);
+}
+
+Result Scene::load_text(const std::string &text) {
+    return loaded(bhr_scene_load(context_, text.data(), text.size()));
+}
+
+Result Scene::save_file(const char *path) const {
+    return result_of(bhr_scene_save_file(context_, path));
+}
+
+Result Scene::load_file(const char *path) {
+    return loaded(bhr_scene_load_file(context_, path));
+}
+
+// A text sets as well what read_back leaves to the setters.
+Result Scene::loaded(BhrStatus status) {
+    const Result result = accepted(status, true);
+    if (result.ok()) {
+        camera_ = sized<BhrCamera>();
+        bhr_get_camera(context_, &camera_);
+        orbit_ = orbit_through(camera_.position);
+        bhr_get_view(context_, &view_);
+        bhr_get_time(context_, &time_);
+        preset_ = NO_PRESET;
+    }
+    return result;
 }

@@ -7,9 +7,10 @@
 #include "handles.h"
 #include "vec.h"
 
+#include <string>
 #include <vector>
 
-// The camera about the hole, which it looks at. Scene lengths and radians.
+// The camera about the hole, which it looks at once it was moved. Scene lengths and radians.
 struct Orbit {
     double distance = 30.0, azimuth = -90.0 * DEGREE, elevation = 10.0 * DEGREE;
 };
@@ -72,12 +73,19 @@ public:
     // Moves the camera along its world line, and the scene's time with it.
     Result advance_camera(double proper_time);
 
+    // All of it as text, in memory and in files (docs/scenes.md).
+    Result save_text(std::string &out) const;
+    Result load_text(const std::string &text);
+    Result save_file(const char *path) const;
+    Result load_file(const char *path);
+
 private:
     BhrPresetOptions preset_options_{};
     BhrPreset        preset_ = NO_PRESET; // that was set last
     BhrPresetMatter  chosen_matter_ = BHR_PRESET_MATTER_THIN;
     Result accepted(BhrStatus status, bool changes_rays);
     void   read_back();
+    Result loaded(BhrStatus status);
 
     BhrContext *context_;
     Hole        hole_;

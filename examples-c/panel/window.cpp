@@ -96,8 +96,12 @@ void Window::start_imgui() {
     glfwSetCursorEnterCallback(window_, [](GLFWwindow *window, int) { on_input(window); });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow *window, int, int, int) { on_input(window); });
     glfwSetScrollCallback(window_, [](GLFWwindow *window, double, double) { on_input(window); });
-    glfwSetKeyCallback(window_, [](GLFWwindow *window, int key, int, int action, int) {
+    glfwSetKeyCallback(window_, [](GLFWwindow *window, int key, int scancode, int action, int mods) {
         on_input(window);
+        const char *name = glfwGetKeyName(key, scancode);
+        if (name != nullptr && mods == GLFW_MOD_CONTROL && action != GLFW_RELEASE && !ImGui::GetIO().WantTextInput) {
+            static_cast<Window *>(glfwGetWindowUserPointer(window))->shortcut_ = name[0];
+        }
         // Not by ImGui, which sees only keys that are down when a frame begins. In a text field Escape leaves it.
         if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS && !ImGui::GetIO().WantTextInput) {
             glfwSetWindowShouldClose(window, GLFW_TRUE);
@@ -137,6 +141,12 @@ Window::~Window() {
 
 bool Window::closed() const {
     return glfwWindowShouldClose(window_) != 0;
+}
+
+char Window::shortcut() {
+    const char pressed = shortcut_;
+    shortcut_ = '\0';
+    return pressed;
 }
 
 bool Window::wait(double seconds) {

@@ -23,6 +23,9 @@ public:
 
     // By its frame or the Escape key.
     bool closed() const;
+    // The key that was pressed with Ctrl since it was last asked for, such as 'z', by the keyboard's layout and outside
+    // of text fields; '\0': none.
+    char shortcut();
     // Sleeps until there is input, at most so long. True when there was some.
     bool wait(double seconds);
     // False while the window has no pixels, minimised: then nothing may be drawn.
@@ -39,6 +42,7 @@ private:
     GLFWwindow *window_ = nullptr;
     bool        glfw_ = false, imgui_ = false;
     bool        input_ = false; // since wait last asked
+    char        shortcut_ = '\0';
 };
 
 #endif

@@ -17,7 +17,7 @@ use super::view::view;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::OutputTarget;
 use crate::renderer::SharedOutput;
-use crate::scene::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind, View};
+use crate::scene::{MOST_CROSSINGS, MOST_OUTPUTS, Output, RayOutput, RayOutputKind, View};
 use arrayvec::ArrayVec;
 use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -84,9 +84,6 @@ unsafe impl Versioned for BhrOutput {
 }
 
 const OUTPUTS: Names = Names { array: "outputs", size: "output_size", count: "output count" };
-
-/// Crossings of a ray at most (BhrQuality.max_disk_order).
-const MOST_CROSSINGS: u32 = 16;
 
 /// An output as the host gave it, its numbers checked.
 #[derive(Clone, Copy)]

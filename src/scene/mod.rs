@@ -41,7 +41,7 @@ pub use lensing::{KerrThreshold, Lensing};
 pub use made::Made;
 pub use occluder::{Distances, Occluder};
 pub use on_device::OnDevice;
-pub use output::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind};
+pub use output::{MOST_CROSSINGS, MOST_OUTPUTS, Output, RayOutput, RayOutputKind};
 pub use preset::{Preset, PresetMatter};
 pub use quality::{LensTables, Method, Quality, VolumeResolution};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray, Transfer};

@@ -15,6 +15,8 @@ use glam::{DMat3, DVec3};
 
 /// Outputs of one frame at most.
 pub const MOST_OUTPUTS: usize = 8;
+/// Crossings of a ray that outputs may be asked of (BhrQuality.max_disk_order).
+pub const MOST_CROSSINGS: u32 = 16;
 /// Numbers that an output has at most.
 pub const OUTPUT_WORDS: usize = 4;
 

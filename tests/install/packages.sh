@@ -55,7 +55,9 @@ man_pages() {
         [ ! -s "$scratch/warnings" ] || { cat "$scratch/warnings" && return 1; }
         [[ $page == *.3.gz ]] || grep -q -e '--help' "$scratch/page" || return 1
     done
-    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 7 ]
+    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 7 ] || return 1
+    # Scene files are where the programs look for them, and bhr.json is in the other package.
+    [ -s "$scratch/unpacked/usr/share/bhr/scenes/cinematic.toml" ] && [ -s "$scratch/unpacked/usr/share/bhr/bhr.json" ]
 }
 
 tarball() {

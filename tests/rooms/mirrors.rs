@@ -19,7 +19,8 @@ const STRUCTS: [(&str, &[&str]); 3] = [
 /// Folders that mirrors lie in. Tests, the twins among them, compare all fields, and fail by themselves.
 const FOLDERS: [&str; 6] = ["examples-c", "examples-other", "include", "python/src", "shaders", "src"];
 
-/// Files that are generated, what tests only, and what names a few fields that users see under other names.
+/// Files that are generated, what tests only, scenes, which set fields and declare none, and what names a few fields
+/// that users see under other names.
 fn is_left_out(path: &Path) -> bool {
     let known = [
         "examples-c/fields.c",
@@ -32,7 +33,10 @@ fn is_left_out(path: &Path) -> bool {
         "python/src/bhr/_fields.py",
         "src/capi/field_list.rs",
     ];
-    known.iter().any(|name| path == Path::new(name)) || path.starts_with("src/gpu/twins") || path.ends_with("tests.rs")
+    known.iter().any(|name| path == Path::new(name))
+        || path.starts_with("src/gpu/twins")
+        || path.starts_with("examples-c/scenes")
+        || path.ends_with("tests.rs")
 }
 
 /// Whether code declares a field of this name, or lists it in a table. A field that is read or set (`film.exposure_ev`,

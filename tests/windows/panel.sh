@@ -148,16 +148,44 @@ panel_takes_clicks() {
     xdotool click 4
     panel_says 1 'distance 27 ' || return 1
 
-    # The second row of the first section is the spin.
-    panel_type_into 200 66 0.25 ' spin 0.25 ' || return 1
+    # Below the row of files the second row of the first section is the spin.
+    panel_type_into 200 84 0.25 ' spin 0.25 ' || return 1
     # The section after the disk's: how many volumes and hot spots there are.
-    panel_type_into 150 543 2 '^matter volumes 2 hot spots 0$' || return 1
-    panel_type_into 150 561 1 '^matter volumes 2 hot spots 1$' || return 1
+    panel_type_into 150 561 2 '^matter volumes 2 hot spots 0$' || return 1
+    panel_type_into 150 579 1 '^matter volumes 2 hot spots 1$' || return 1
     # A refusal is written below its slider, and moves all that follows.
-    panel_type_into 200 66 1.5 '^refused .*1\.5.*0\.999' || return 1
+    panel_type_into 200 84 1.5 '^refused .*1\.5.*0\.999' || return 1
     panel_expect "$(panel_last '^(scene|refused) ' | cut -d ' ' -f 1)" refused || return 1 # the scene is as it was
 
     panel_close "$middle_x" "$middle_y"
+}
+
+# panel_ctrl KEY: both are held for a while, as by a hand.
+panel_ctrl() {
+    xdotool keydown ctrl && sleep 0.3 && xdotool keydown "$1" && sleep 0.3 && xdotool keyup "$1" && sleep 0.3 &&
+        xdotool keyup ctrl && sleep 0.3
+}
+
+# Changes are undone and done again by keys and buttons, a load among them; a scene comes back from its file, all of it,
+# and a file that is none is said in the panel and changes nothing.
+panel_keeps_scenes() {
+    local folder=$scratch/panel-scenes spin='^scene mass 1 spin' away=800,300
+    mkdir -p -- "$folder" && cd -- "$folder" && panel_open --size 1600x1000 --paused --backend cpu && panel_find ||
+        return 1
+    panel_type_into 200 84 0.25 "$spin 0.25 " && panel_press 140 30 && panel_says 1 '^file saved panel.toml$' &&
+        cp -- panel.toml first.toml || return 1
+    panel_type_into 200 84 0.5 "$spin 0.5 " && panel_point "${away%,*}" "${away#*,}" && xdotool click 4 &&
+        panel_says 1 'spin 0.5 distance 27 ' && sleep 1 || return 1
+    # One step is the wheel's, and one is the number's, digit by digit as it was typed.
+    panel_ctrl z && panel_says 2 'spin 0.5 distance 30 ' && panel_ctrl z && panel_says 2 "$spin 0.25 " &&
+        panel_ctrl y && panel_says 3 'spin 0.5 distance 30 ' && panel_press 288 30 &&
+        panel_says 2 'spin 0.5 distance 27 ' || return 1
+    panel_press 188 30 && panel_says 1 '^file loaded panel.toml$' && panel_says 3 "$spin 0.25 distance 30 " &&
+        rm panel.toml && panel_press 140 30 && panel_says 2 '^file saved' && cmp panel.toml first.toml ||
+        return 1
+    echo 'spin = 3' >>panel.toml
+    panel_press 188 30 && panel_says 1 '^file .*panel.toml: line .*spin' && panel_press 238 30 &&
+        panel_says 3 'spin 0.5 distance 27 ' && panel_close "${away%,*}" "${away#*,}"
 }
 
 # Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.

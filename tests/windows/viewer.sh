@@ -225,3 +225,55 @@ viewer_records() {
         [ "$(identify -format '%wx%h\n' "${files[@]}" | sort -u)" = 160x90 ] &&
         ! viewer_equal "${files[0]}" "${files[6]}"
 }
+
+# viewer_rounded FILE: a scene file with its numbers to eight digits behind the point: each frame makes the camera's
+# axes stand on each other, which may change their last digits.
+viewer_rounded() {
+    awk '{ line = ""; count = split($0, part, /[][, ]+/)
+        for (i = 1; i <= count; i++) {
+            text = part[i] ~ /^-?[0-9]/ ? sprintf("%.8f", part[i]) : part[i]
+            line = line " " (text == "-0.00000000" ? "0.00000000" : text)
+        }
+        print line }' "$1"
+}
+
+# F5 and F9: the camera and every setting come back from the file, whatever was changed in between; --scene begins
+# there.
+viewer_keeps_scenes() {
+    viewer_open --size 160x90 && xdotool key space Right bracketleft v u j k 3 Up g b || return 1
+    viewer_until 60 viewer_says 'samples a pixel' && xdotool click 4 &&
+        viewer_until 60 viewer_title_says 'r 2[12].* M' && viewer_until 60 viewer_title_says 'at rest' || return 1
+    xdotool key F5 && viewer_until 60 viewer_says 'scene saved: viewer-scene.toml' || return 1
+    cp -- "$viewer_folder/viewer-scene.toml" "$scratch/kept.toml" || return 1
+    xdotool key Right Right bracketright v u j k 3 Down g B m x 1 p && xdotool click 5 click 5 &&
+        viewer_until 60 viewer_says 'mass 1.1' && viewer_until 60 viewer_title_says 'a +0.300' || return 1
+    xdotool key F9 && viewer_until 60 viewer_says 'scene loaded: viewer-scene.toml$' &&
+        viewer_until 60 viewer_title_says 'M 1 .* a +0.100' && rm -- "$viewer_folder/viewer-scene.toml" &&
+        xdotool key F5 && viewer_until 60 test -s "$viewer_folder/viewer-scene.toml" && viewer_close || return 1
+    diff <(viewer_rounded "$scratch/kept.toml") <(viewer_rounded "$viewer_folder/viewer-scene.toml") || return 1
+    viewer_open --size 160x90 --scene "$scratch/kept.toml" && viewer_until 60 viewer_title_says 'r 2[12].* M' &&
+        viewer_title_says 'a +0.100' || return 1
+    echo 'spin = 3' >>"$scratch/kept.toml" && xdotool key F9 &&
+        viewer_until 60 viewer_says 'cannot load the scene.*line' && viewer_close
+}
+
+# A scene's file and nothing else: what the gallery renders of it; options of a scene, and files that are none, are
+# refused.
+viewer_shows_a_file() {
+    local file=$root/examples-c/scenes/grid.toml
+    "$viewer" --backend cpu --size 96x54 --scene "$file" --frames 1 --screenshot "$scratch/viewer-grid.png" &&
+        "$examples/gallery" --backend cpu --width 96 --only grid --output "$scratch" &&
+        viewer_equal "$scratch/viewer-grid.png" "$scratch/grid.png" || return 1
+    viewer_refuses 2 'the file says all' --scene "$file" --spin 0.5 &&
+        viewer_refuses 1 'absent.toml' --scene absent.toml &&
+        viewer_refuses 1 'key with no value' --scene "$root/tests/run"
+}
+
+# viewer_refuses STATUS WORDS OPTIONS...
+viewer_refuses() {
+    local expected=$1 words=$2 status=0
+    shift 2
+    "$viewer" --size 16x9 --frames 1 "$@" 2>"$scratch/viewer-errors" || status=$?
+    cat -- "$scratch/viewer-errors"
+    [ "$status" -eq "$expected" ] && grep -q -e "$words" "$scratch/viewer-errors"
+}

@@ -15,7 +15,9 @@ pub fn parameters(made: &Made) -> Vec<(String, Attribute)> {
         let of = match section {
             Section::Moment => "bhr".to_owned(),
             Section::Hole => "bhr.hole".into(),
-            Section::Camera(_) | Section::Orbit(_) | Section::Path(_) | Section::Aim(_) => "bhr.camera".into(),
+            Section::Camera(_) => "bhr.camera".into(),
+            // A scene's camera is where it is; these belong to texts.
+            Section::Orbit(_) | Section::Path(_) | Section::Aim(_) | Section::Turn(_) => continue,
             Section::Disk => "bhr.disk".into(),
             Section::Volume(i) => format!("bhr.volume{i}"),
             Section::HotSpot(i) => format!("bhr.hot_spot{i}"),

@@ -119,7 +119,7 @@ impl SceneFile {
         let walks = self.values.shots.iter().any(|shot| shot.path.is_some());
         self.values.shots.len() > 1
             || self.tracks.iter().any(|track| match track.section {
-                Section::Orbit(_) | Section::Path(_) | Section::Aim(_) => true,
+                Section::Orbit(_) | Section::Path(_) | Section::Aim(_) | Section::Turn(_) => true,
                 Section::Camera(_) => {
                     derived && ["position", "forward", "up", "motion", "velocity"].contains(&track.field.name)
                 }

@@ -2,7 +2,7 @@
 //! A scene's text, read: TOML into values and tracks. Every mistake is told by line and column.
 
 use super::tracks::{Curve, Key, Track};
-use super::values::{Aim, Misfit, Orbit, Path as WorldLine, Render, Section, Shot, Values};
+use super::values::{Aim, Misfit, Orbit, Path as WorldLine, Render, Section, Shot, Turn, Values};
 use super::{FORMAT, MOST_BYTES, SceneFile};
 use crate::capi::camera::BhrCamera;
 use crate::capi::disk::BhrDisk;
@@ -341,7 +341,7 @@ impl Reader {
     }
 
     fn camera(&mut self, values: &mut Values, shot: usize, given: &Given<'_>) -> Checked<()> {
-        const MORE: [&str; 3] = ["orbit", "proper_time", "look_at"];
+        const MORE: [&str; 4] = ["orbit", "proper_time", "look_at", "turn"];
         self.struct_of(values, Section::Camera(shot), given, &MORE)?;
         let has = |name: &str| given.get_ref().get(name).is_some();
         if let Some(orbit) = given.get_ref().get("orbit") {
@@ -372,6 +372,10 @@ impl Reader {
             for field in Section::Aim(shot).fields() {
                 self.field(values, Section::Aim(shot), field, look)?;
             }
+        }
+        if let Some(turn) = given.get_ref().get("turn") {
+            self.add(values, shot, |shot| shot.turn = Some(Turn::default()));
+            self.struct_of(values, Section::Turn(shot), turn, &[])?;
         }
         Ok(())
     }

@@ -209,6 +209,9 @@ fn mistakes_are_told_where_they_stand() {
         ("[camera]\norbit = { distance = 9 }\nup = [0, 0, 1]", "line 2, column 9: a camera has an orbit, or up"),
         ("[camera]\norbit = {}", "line 2, column 9: an orbit has no distance"),
         ("[camera]\nlook_at = [1, 2, 3]\nforward = [1, 0, 0]", "line 2, column 11: a camera has look_at, or forward"),
+        ("[camera]\nturn = { left = 1 }", "line 2, column 10: [camera.turn] has no \"left\"; it has right, up, roll"),
+        ("[camera]\nturn = { up = 'nan deg' }", "line 2, column 15: up is \"nan deg\""),
+        ("[camera]\nturn = { up = inf }", "camera turn up is"),
         ("[camera]\nfov_y = '45'", "line 2, column 9: fov_y is \"45\"; it must be a number of radians, or degrees"),
         ("[camera]\nfov_y = 4", "line 2, column 9: [camera]: camera fov_y is 4"),
         ("[camera]\nposition = [1, 0, 0]\nmotion = 'free_fall'\nproper_time = 9", "[camera]: the fall from"),
@@ -254,6 +257,19 @@ fn cameras_are_put_where_the_text_says() {
     let scene = scene_at(&falling, 1.0);
     assert_eq!((scene.camera.position, scene.time), (fallen.position, 5.0 + passed));
     assert!(scene.camera.forward.abs_diff_eq(-fallen.position, 1e-12));
+    // The look is turned from the hole: to its right, up to the zenith, and about itself.
+    let turned = |turn: &str| {
+        let camera = camera(&format!("[camera]\norbit = {{ distance = 20 }}\nturn = {{ {turn} }}"), 1.0);
+        assert!((camera.forward.length() - 1.0).abs() < 1e-15 && camera.forward.dot(camera.up).abs() < 1e-15);
+        [camera.forward, camera.up]
+    };
+    let close = |found: [DVec3; 2], expected: [DVec3; 2]| {
+        assert!(found[0].abs_diff_eq(expected[0], 1e-15) && found[1].abs_diff_eq(expected[1], 1e-15), "{found:?}");
+    };
+    close(turned("right = '90 deg'"), [DVec3::Y, DVec3::Z]);
+    close(turned("up = '90 deg'"), [DVec3::Z, DVec3::X]);
+    close(turned("roll = '90 deg'"), [DVec3::NEG_X, DVec3::Y]);
+    close(turned("right = '90 deg', up = { keys = [[0, 0], [2, '180 deg']] }"), [DVec3::Z, DVec3::NEG_Y]);
     let cut = "[camera]\nfov_y = 1\n[[cuts]]\nat = 2\ncamera = { fov_y = { keys = [[0, 0.2], [4, 0.6]] } }";
     assert_eq!([0.0, 1.9, 2.0, 4.0].map(|seconds| camera(cut, seconds).fov_y), [1.0, 1.0, 0.4, 0.6]);
 }
@@ -262,7 +278,7 @@ fn cameras_are_put_where_the_text_says() {
 fn what_moves_is_saved_as_it_was_loaded() {
     let text = "time = { keys = [[0, 0], [10, 300]] }\n[hole]\nspin = { keys = [[0, 0.1], [1, 0.5, 'hold'], [2, 0.9]], \
                 curve = 'ease' }\n[camera]\nproper_time = { keys = [[0, 0], [9, 5]] }\nmotion = 'orbit'\norbit = { \
-                distance = 8, azimuth = '30 deg' }\n\
+                distance = 8, azimuth = '30 deg' }\nturn = { right = 1, roll = { keys = [[0, 0], [9, 1]] } }\n\
                 [[cuts]]\nat = 3\ncamera = { position = [3, 4, 5], look_at = { keys = [[3, [0, 0, 0]], [4, [1, 1, \
                 1]]] } }\n[[volumes]]\nflags = { keys = [[0, []], [1, ['retrograde']]] }\n\
                 [render]\nwidth = 300";
@@ -325,11 +341,14 @@ fn numbers_that_mean_nothing_come_back() {
 
 /// The samples of docs/scenes.md are scenes.
 #[test]
-fn samples_of_the_page_are_scenes() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenes.md");
-    let page = std::fs::read_to_string(page).unwrap();
-    let samples = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect::<Vec<_>>();
-    assert!(samples.len() >= 3);
+fn samples_of_pages_are_scenes() {
+    let page = |name: &str| {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        std::fs::read_to_string(page).unwrap()
+    };
+    let pages = page("docs/scenes.md") + &page("docs/domes.md");
+    let samples = pages.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect::<Vec<_>>();
+    assert!(samples.len() >= 5);
     for sample in samples {
         let file = parsed(sample);
         for seconds in [0.0, 1.0, 5.0, 20.0] {

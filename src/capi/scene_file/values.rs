@@ -52,6 +52,34 @@ pub struct Aim {
     pub look_at: [f64; 3],
 }
 
+/// A turn of the camera's look, from where the other values point it: to the right about its up, then up, then about
+/// the look itself, clockwise. Radians.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct Turn {
+    pub right: f64,
+    pub up: f64,
+    pub roll: f64,
+}
+
+impl Turn {
+    /// Errors: as [`Camera::axes`]; angles that are no numbers.
+    fn apply(&self, camera: &mut Camera) -> Result<()> {
+        for (name, angle) in [("right", self.right), ("up", self.up), ("roll", self.roll)] {
+            check_finite(angle, &format!("camera turn {name}"))?;
+        }
+        let axes = camera.axes()?;
+        let (right, up, forward) = (axes.x_axis, axes.y_axis, axes.z_axis);
+        let (sin, cos) = self.right.sin_cos();
+        let (forward, right) = (forward * cos + right * sin, right * cos - forward * sin);
+        let (sin, cos) = self.up.sin_cos();
+        let (forward, up) = (forward * cos + up * sin, up * cos - forward * sin);
+        let (sin, cos) = self.roll.sin_cos();
+        (camera.forward, camera.up) = (forward, up * cos + right * sin);
+        Ok(())
+    }
+}
+
 /// A camera's way along its world line, by bhr_camera_advance.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
@@ -142,6 +170,15 @@ unsafe impl Described for Orbit {
 }
 
 // SAFETY: repr(C), doubles only.
+unsafe impl Described for Turn {
+    const FIELDS: &'static [Field] = &[
+        field("right", offset_of!(Turn, right), Kind::Angle),
+        field("up", offset_of!(Turn, up), Kind::Angle),
+        field("roll", offset_of!(Turn, roll), Kind::Angle),
+    ];
+}
+
+// SAFETY: repr(C), doubles only.
 unsafe impl Described for Aim {
     const FIELDS: &'static [Field] = &[field("look_at", offset_of!(Aim, look_at), Kind::Numbers(3))];
 }
@@ -170,20 +207,21 @@ pub struct Shot {
     pub orbit: Option<Orbit>,
     pub path: Option<Path>,
     pub aim: Option<Aim>,
+    pub turn: Option<Turn>,
 }
 
 impl Shot {
     pub fn of(camera: BhrCamera) -> Self {
-        Self { at: f64::NEG_INFINITY, camera, orbit: None, path: None, aim: None }
+        Self { at: f64::NEG_INFINITY, camera, orbit: None, path: None, aim: None, turn: None }
     }
 
     /// Whether more than the camera's own fields say where it is.
     pub fn is_derived(&self) -> bool {
-        self.orbit.is_some() || self.path.is_some() || self.aim.is_some()
+        self.orbit.is_some() || self.path.is_some() || self.aim.is_some() || self.turn.is_some()
     }
 
     /// The camera about the scene's hole, and the scene time that has gone by on its world line. Errors: as
-    /// bhr_camera_orbit, bhr_camera_advance, bhr_camera_look_at.
+    /// bhr_camera_orbit, bhr_camera_advance, bhr_camera_look_at; a turn that is no number.
     fn camera(&self, scene: &Scene) -> Result<(Camera, f64)> {
         let mut given = self.camera;
         if let Some(Orbit { distance, azimuth, elevation }) = self.orbit {
@@ -204,6 +242,9 @@ impl Shot {
             // A way that is too long for numbers ends nowhere.
             camera.check()?;
         }
+        if let Some(turn) = self.turn {
+            turn.apply(&mut camera)?;
+        }
         Ok((camera, time))
     }
 }
@@ -218,6 +259,7 @@ pub enum Section {
     Orbit(usize),
     Path(usize),
     Aim(usize),
+    Turn(usize),
     Disk,
     Volume(usize),
     HotSpot(usize),
@@ -238,6 +280,8 @@ impl Section {
             Self::Camera(i) | Self::Path(i) | Self::Aim(i) => format!("the camera of [[cuts]] {i}"),
             Self::Orbit(0) => "[camera.orbit]".into(),
             Self::Orbit(i) => format!("the camera's orbit of [[cuts]] {i}"),
+            Self::Turn(0) => "[camera.turn]".into(),
+            Self::Turn(i) => format!("the camera's turn of [[cuts]] {i}"),
             Self::Disk => "[disk]".into(),
             Self::Volume(i) => format!("[[volumes]] {}", i + 1),
             Self::HotSpot(i) => format!("[[hot_spots]] {}", i + 1),
@@ -257,6 +301,7 @@ impl Section {
             Self::Orbit(_) => Orbit::FIELDS,
             Self::Path(_) => Path::FIELDS,
             Self::Aim(_) => Aim::FIELDS,
+            Self::Turn(_) => Turn::FIELDS,
             Self::Disk => BhrDisk::FIELDS,
             Self::Volume(_) => BhrVolume::FIELDS,
             Self::HotSpot(_) => BhrHotSpot::FIELDS,
@@ -271,7 +316,7 @@ impl Section {
     /// The shot that a camera's section belongs to.
     pub fn shot(self) -> Option<usize> {
         match self {
-            Self::Camera(i) | Self::Orbit(i) | Self::Path(i) | Self::Aim(i) => Some(i),
+            Self::Camera(i) | Self::Orbit(i) | Self::Path(i) | Self::Aim(i) | Self::Turn(i) => Some(i),
             _ => None,
         }
     }
@@ -331,6 +376,7 @@ impl Values {
             all.extend(shot.orbit.map(|_| Section::Orbit(i)));
             all.extend(shot.path.map(|_| Section::Path(i)));
             all.extend(shot.aim.map(|_| Section::Aim(i)));
+            all.extend(shot.turn.map(|_| Section::Turn(i)));
         }
         all.extend(self.disk.map(|_| Section::Disk));
         all.extend((0..self.volumes.len()).map(Section::Volume));
@@ -350,6 +396,7 @@ impl Values {
             Section::Orbit(i) => bytes_of(self.shots.get(i)?.orbit.as_ref()?),
             Section::Path(i) => bytes_of(self.shots.get(i)?.path.as_ref()?),
             Section::Aim(i) => bytes_of(self.shots.get(i)?.aim.as_ref()?),
+            Section::Turn(i) => bytes_of(self.shots.get(i)?.turn.as_ref()?),
             Section::Disk => bytes_of(self.disk.as_ref()?),
             Section::Volume(i) => bytes_of(self.volumes.get(i)?),
             Section::HotSpot(i) => bytes_of(self.hot_spots.get(i)?),
@@ -370,6 +417,7 @@ impl Values {
             Section::Orbit(i) => bytes_of_mut(self.shots.get_mut(i)?.orbit.as_mut()?),
             Section::Path(i) => bytes_of_mut(self.shots.get_mut(i)?.path.as_mut()?),
             Section::Aim(i) => bytes_of_mut(self.shots.get_mut(i)?.aim.as_mut()?),
+            Section::Turn(i) => bytes_of_mut(self.shots.get_mut(i)?.turn.as_mut()?),
             Section::Disk => bytes_of_mut(self.disk.as_mut()?),
             Section::Volume(i) => bytes_of_mut(self.volumes.get_mut(i)?),
             Section::HotSpot(i) => bytes_of_mut(self.hot_spots.get_mut(i)?),

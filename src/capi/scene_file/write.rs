@@ -71,6 +71,8 @@ fn title(section: Section, file: &SceneFile) -> String {
         }
         Section::Orbit(0) => "\n[camera.orbit]\n".into(),
         Section::Orbit(_) => "\n[cuts.camera.orbit]\n".into(),
+        Section::Turn(0) => "\n[camera.turn]\n".into(),
+        Section::Turn(_) => "\n[cuts.camera.turn]\n".into(),
         Section::Volume(_) => "\n[[volumes]]\n".into(),
         Section::HotSpot(_) => "\n[[hot_spots]]\n".into(),
         section => format!("\n{}\n", section.name()),

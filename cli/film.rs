@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Frames in a video. It is there whole or not at all; until then what is there of it plays, and the next run goes on
+//! with it. Knows no codec.
+
+use crate::claim::Claim;
+use crate::encode::{Done, Encoders, Frame};
+use crate::ending::Ending;
+use crate::frames::Names;
+use crate::manifest::{Fingerprint, Made, Manifest};
+use crate::order::Order;
+use crate::pictures::PATIENCE;
+use crate::progress::Progress;
+use crate::signals::Signals;
+use crate::video::codec::Codec;
+use crate::video::{Files, Shape, Writer, spherical};
+use bhr::renderer::Renderer;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+pub struct Film<'a> {
+    pub order: &'a Order,
+    pub codec: &'a Codec,
+    pub names: &'a Names,
+    pub again: bool,
+    /// The program.
+    pub ffmpeg: PathBuf,
+    pub keyframes: Option<u32>,
+    pub signals: &'a Signals,
+}
+
+fn lock(writer: &Mutex<Writer>) -> MutexGuard<'_, Writer> {
+    writer.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Film<'_> {
+    /// Renders the frames of `list` into one video, in this order. Errors: the first mistake; of a video that is not
+    /// whole all pieces stay that were.
+    pub fn render(&self, list: &[u32], renderer: &mut Renderer, progress: &Progress) -> Result<(), Ending> {
+        let whole = self.names.of(0);
+        let first = *list.first().ok_or_else(|| Ending::usage("--frames: a video needs one frame at least"))?;
+        let _claim = self.claim(&whole)?;
+        let shape = self.shape(list.len(), first, renderer)?;
+        let of = self.order.fingerprint_of_video(list, &shape.words());
+        let files = Files { ffmpeg: self.ffmpeg.clone(), whole: whole.clone(), manifest: self.names.manifest() };
+        let manifest = Manifest::read(&files.manifest);
+        let was_there = |frame: &u32| Done { frame: *frame, file: whole.clone(), seconds: None };
+        if !self.again && manifest.has(&whole, &of) {
+            progress.frames(&list.iter().map(was_there).collect::<Vec<_>>());
+            return Ok(());
+        }
+        let there = manifest.part_of(&files.part(), &of).filter(|_| !self.again);
+        let writer = Writer::open(shape, files, of.clone(), there)?;
+        let (there, left) = list.split_at_checked(writer.frames()).unwrap_or((&[], list));
+        progress.frames(&there.iter().map(was_there).collect::<Vec<_>>());
+        let writer = Arc::new(Mutex::new(writer));
+        // One thread gives ffmpeg its frames, in their order; the threads that encode are ffmpeg's.
+        let (_, bytes) = self.order.places()?;
+        let mut encoders = Encoders::new(1, left.len() + 1, bytes)?;
+        let ended = self.render_all(left, of, &writer, &mut encoders, renderer, progress);
+        let ended = progress.finish(encoders, ended);
+        // After a signal, or where the scene has a mistake, pieces may be left that have got all of their frames.
+        if ended.is_err()
+            && let Ok(done) = lock(&writer).settle()
+        {
+            progress.frames(&done);
+        }
+        ended
+    }
+
+    /// Waits for the claim on the video, which one program at a time makes.
+    fn claim(&self, whole: &std::path::Path) -> Result<Claim, Ending> {
+        loop {
+            self.signals.check()?;
+            if let Some(claim) = Claim::on(whole)? {
+                return Ok(claim);
+            }
+            std::thread::sleep(PATIENCE);
+        }
+    }
+
+    fn shape(&self, frames: usize, first: u32, renderer: &mut Renderer) -> Result<Shape, Ending> {
+        let layout = self.order.layout();
+        let panorama = self.order.is_panorama(first, renderer)?;
+        // QuickTime's .mov files have no place for these boxes.
+        let mp4 = self.names.of(0).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4"));
+        let description = (panorama && mp4).then(|| spherical::equirect(self.order.stereo, self.order.margins()));
+        Ok(Shape {
+            size: [layout.width, layout.height],
+            rate: self.order.rate,
+            frames,
+            codec: *self.codec,
+            transparent: self.order.transparent,
+            keyframes: self.keyframes,
+            description: description.unwrap_or_default(),
+        })
+    }
+
+    fn render_all(
+        &self,
+        list: &[u32],
+        of: Fingerprint,
+        writer: &Arc<Mutex<Writer>>,
+        encoders: &mut Encoders,
+        renderer: &mut Renderer,
+        progress: &Progress,
+    ) -> Result<(), Ending> {
+        let mut lost = 0;
+        let begin = Instant::now();
+        for frame in list {
+            self.signals.check()?;
+            for written in encoders.written() {
+                progress.frames(&written?);
+            }
+            let frame = *frame;
+            let mut pixels = encoders.pixels()?;
+            let begin = Instant::now();
+            self.order.render(frame, &mut pixels, renderer, &mut lost, self.signals)?;
+            let seconds = begin.elapsed().as_secs_f64();
+            let writer = writer.clone();
+            let write = move |pixels: &[u32]| lock(&writer).add(frame, seconds, bytemuck::cast_slice(pixels));
+            encoders.order(Frame { pixels, write: Box::new(write) })?;
+        }
+        let adapter = renderer.adapter();
+        let made = Made {
+            file: self.names.of(0),
+            of,
+            adapter: adapter.name.clone(),
+            backend: adapter.backend.to_string(),
+            seconds: begin.elapsed().as_secs_f64(),
+        };
+        let (writer, manifest, signals) = (writer.clone(), self.names.manifest(), self.signals.clone());
+        let end = move |_: &[u32]| {
+            let mut writer = lock(&writer);
+            let done = writer.end(&signals)?;
+            made.note(&manifest)?;
+            writer.remove_part();
+            Ok(done)
+        };
+        encoders.order(Frame { pixels: Vec::new(), write: Box::new(end) })
+    }
+}

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! All that decides the bytes of frames: scene, size, part of the frame, format, eyes, outputs; and the rendering of
+//! one frame by it. Knows no files but by their endings.
+
+use crate::ending::Ending;
+use crate::frames;
+use crate::manifest::{Fingerprint, Tile, hash};
+use crate::open::{self, Opened, recovering};
+use crate::signals::Signals;
+use crate::video::codec::Codec;
+use bhr::image::{ImageMut, ImageRef, Layout, PixelFormat};
+use bhr::job::OutputTarget;
+use bhr::renderer::Renderer;
+use bhr::scene::{Eye, MOST_CROSSINGS, MOST_OUTPUTS, Made, Output, Projection, RayOutput, RayOutputKind, Region, View};
+use clap::ArgMatches;
+use std::path::PathBuf;
+
+/// Where the pictures of the two eyes lie in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stereo {
+    TopBottom,
+    SideBySide,
+}
+
+pub struct Order {
+    pub opened: Opened,
+    /// Frames a second.
+    pub rate: f64,
+    /// The full frame of one eye.
+    size: [u32; 2],
+    /// The part of the full frame.
+    pub tile: Option<[u32; 4]>,
+    samples: Option<u32>,
+    /// The video that frames go into; `None`: each has a file of its own.
+    pub codec: Option<Codec>,
+    format: PixelFormat,
+    pub transparent: bool,
+    pub stereo: Option<Stereo>,
+    /// Beside the light.
+    outputs: Vec<Output>,
+    scene_hash: String,
+}
+
+/// An image of a frame: where its pixels lie among those of the frame.
+pub struct Place {
+    pub output: Output,
+    pub layout: Layout,
+    words: std::ops::Range<usize>,
+}
+
+/// The kinds of files that frames go into.
+fn kind_of(given: &ArgMatches) -> Result<(Option<Codec>, PixelFormat), Ending> {
+    let out = given.get_one::<PathBuf>("out").ok_or_else(|| Ending::usage("no --out"))?;
+    let extension = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let codec = given.get_one::<String>("codec").map(String::as_str);
+    let codec = Codec::of(extension.as_deref(), codec, given.get_one::<u32>("quality").copied())?;
+    let format = match (extension.as_deref(), given.get_flag("float")) {
+        (_, false) if codec.is_some() => PixelFormat::Rgba8Srgb,
+        (Some("png"), false) => PixelFormat::Rgba8Srgb,
+        (Some("exr"), false) => PixelFormat::Rgba16F,
+        (Some("exr"), true) => PixelFormat::Rgba32F,
+        (_, float) => {
+            let known = if float { ".exr, with --float" } else { ".png, .exr, .mp4 or .mov" };
+            return Err(Ending::usage(format!("--out {}: files are {known}", out.display())));
+        }
+    };
+    Ok((codec, format))
+}
+
+/// Outputs as they are named on the command line: `depth,position,position1`.
+fn outputs_of(list: &str) -> Result<Vec<Output>, Ending> {
+    let of = |name: &str| -> Option<Output> {
+        let digits = name.trim_start_matches(|letter: char| letter.is_ascii_lowercase() || letter == '-');
+        let (kind, _) = name.split_at(name.len() - digits.len());
+        let index = if digits.is_empty() { 0 } else { digits.parse::<u32>().ok()? };
+        let kind = match kind {
+            "depth" => RayOutputKind::Depth,
+            "sky" => RayOutputKind::Sky,
+            "transmission" => RayOutputKind::Transmission,
+            "position" => RayOutputKind::Position,
+            "disk" => RayOutputKind::Disk,
+            "redshift" => RayOutputKind::Redshift,
+            "order" => RayOutputKind::Order,
+            "deflection" => RayOutputKind::Deflection,
+            "steps" if digits.is_empty() => return Some(Output::of_view(View::Steps)),
+            "metric" if digits.is_empty() => return Some(Output::of_view(View::Metric)),
+            "optical-depth" if digits.is_empty() => return Some(Output::of_view(View::OpticalDepth)),
+            "intensity" if digits.is_empty() => return Some(Output::of_view(View::Intensity)),
+            _ => return None,
+        };
+        let counts = matches!(kind, RayOutputKind::Position | RayOutputKind::Disk);
+        (digits.is_empty() || (counts && index < MOST_CROSSINGS)).then_some(Output::Ray(RayOutput { kind, index }))
+    };
+    let mut outputs = Vec::new();
+    for name in list.split(',').map(str::trim) {
+        let output = of(name).ok_or_else(|| {
+            Ending::usage(format!(
+                "--outputs {list}: \"{name}\" is none of depth, sky, transmission, position, disk (of a later \
+                 crossing: position1 .. position{last}, disk1 ..), redshift, order, deflection, steps, metric, \
+                 optical-depth, intensity",
+                last = MOST_CROSSINGS - 1
+            ))
+        })?;
+        if !outputs.contains(&output) {
+            outputs.push(output);
+        }
+    }
+    // The light is one of them.
+    if outputs.len() >= MOST_OUTPUTS {
+        return Err(Ending::usage(format!("--outputs {list}: it must name {} at most", MOST_OUTPUTS - 1)));
+    }
+    Ok(outputs)
+}
+
+fn stereo_of(given: &ArgMatches) -> Result<Option<Stereo>, Ending> {
+    match given.get_one::<String>("stereo").map(String::as_str) {
+        None => Ok(None),
+        Some("top-bottom") => Ok(Some(Stereo::TopBottom)),
+        Some("side-by-side") => Ok(Some(Stereo::SideBySide)),
+        Some(other) => Err(Ending::usage(format!("--stereo {other}: it must be top-bottom or side-by-side"))),
+    }
+}
+
+impl Order {
+    pub fn new(given: &ArgMatches) -> Result<Self, Ending> {
+        let opened = open::scene(given)?;
+        let render = opened.render();
+        let text = |name: &str| given.get_one::<String>(name).map(String::as_str);
+        let size = text("size").map(frames::size).transpose()?.unwrap_or([render.width, render.height]);
+        let tile = text("tile").map(|tile| frames::numbers::<4, u32>("tile", tile, "0,0,960,540")).transpose()?;
+        if let Some([x, y, width, height]) = tile {
+            let within = |begin: u32, length: u32, side: u32| {
+                length > 0 && u64::from(begin) + u64::from(length) <= u64::from(side)
+            };
+            if !within(x, width, size[0]) || !within(y, height, size[1]) {
+                let [w, h] = size;
+                return Err(Ending::usage(format!("--tile {x},{y},{width},{height}: it must lie in {w} x {h}")));
+            }
+        }
+        let (codec, format) = kind_of(given)?;
+        let (stereo, outputs) = (stereo_of(given)?, text("outputs").map_or(Ok(Vec::new()), outputs_of)?);
+        if !outputs.is_empty() && (format.is_developed() || stereo.is_some()) {
+            return Err(Ending::usage("--outputs: only .exr files of one eye have layers"));
+        }
+        let samples = given.get_one::<u32>("samples").copied();
+        let transparent = given.get_flag("transparent");
+        let map = opened.file.map().map(|map| std::fs::read(map).map_err(|error| Ending::io(map, error)));
+        let map = map.transpose()?.map(|bytes| hash(&bytes));
+        let scene = opened.file.text_of_pixels()?;
+        let mut all = format!("{scene}\n{map:?} {size:?} {samples:?} {format:?} {transparent}");
+        if stereo.is_some() || !outputs.is_empty() {
+            all += &format!(" {stereo:?} {outputs:?}");
+        }
+        let scene_hash = hash(all.as_bytes());
+        let rate = render.frames_per_second;
+        let order = Self { opened, rate, size, tile, samples, codec, format, transparent, stereo, outputs, scene_hash };
+        if let Some(codec) = &order.codec {
+            let Layout { width, height, .. } = order.layout();
+            codec.check(width, height, transparent)?;
+        }
+        Ok(order)
+    }
+
+    /// Puts a frame's scene into the renderer; its region, and the size of one eye's image.
+    fn show(&self, frame: u32, renderer: &mut Renderer) -> Result<(Option<Region>, [u32; 2]), Ending> {
+        let region = self.opened.show(f64::from(frame) / self.rate, renderer)?;
+        if let Some(samples) = self.samples {
+            renderer.scene.quality.samples_per_pixel = samples;
+            renderer.scene.quality.check()?;
+        }
+        let camera = &renderer.scene.camera;
+        if self.stereo.is_some() && !(camera.projection == Projection::Equirect && camera.eye_distance > 0.0) {
+            return Err(Ending::data(format!(
+                "--stereo: camera projection is {:?} and eye_distance {}; two eyes need equirect and more than 0",
+                camera.projection, camera.eye_distance
+            )));
+        }
+        let [full_width, full_height] = self.size;
+        let region = self.tile.map(|[x, y, _, _]| Region { full_width, full_height, x, y }).or(region);
+        Ok((region, self.eye_size()))
+    }
+
+    fn eye_size(&self) -> [u32; 2] {
+        self.tile.map_or(self.size, |[_, _, width, height]| [width, height])
+    }
+
+    /// All that decides the bytes of a frame's file.
+    pub fn fingerprint(&self, frame: u32) -> Fingerprint {
+        let seconds = f64::from(frame) / self.rate;
+        let moment = if self.opened.file.moves() { seconds.to_bits() } else { 0 };
+        let scene = hash(format!("{} {moment:x}", self.scene_hash).as_bytes());
+        Fingerprint { frame, scene, tile: self.tile_of_frame() }
+    }
+
+    /// All that decides the bytes of a video of these frames, with `shape` of the video itself.
+    pub fn fingerprint_of_video(&self, list: &[u32], shape: &str) -> Fingerprint {
+        let scene = hash(format!("{} {} {list:?} {shape}", self.scene_hash, self.rate.to_bits()).as_bytes());
+        Fingerprint { frame: list.first().copied().unwrap_or(0), scene, tile: self.tile_of_frame() }
+    }
+
+    fn tile_of_frame(&self) -> Option<Tile> {
+        let [full_width, full_height] = self.size;
+        self.tile.map(|[x, y, width, height]| Tile {
+            region: Region { full_width, full_height, x, y },
+            size: [width, height],
+        })
+    }
+
+    /// The picture of one eye.
+    pub fn eye_layout(&self) -> Layout {
+        let [width, height] = self.eye_size();
+        Layout::packed(self.format, width, height)
+    }
+
+    /// The picture, of both eyes.
+    pub fn layout(&self) -> Layout {
+        let [width, height] = self.eye_size();
+        let [width, height] = match self.stereo {
+            None => [width, height],
+            Some(Stereo::TopBottom) => [width, height.saturating_mul(2)],
+            Some(Stereo::SideBySide) => [width.saturating_mul(2), height],
+        };
+        Layout::packed(self.format, width, height)
+    }
+
+    /// The images of a frame, the picture first, and the bytes of all. Errors: as [`Layout::check`].
+    pub fn places(&self) -> Result<(Vec<Place>, usize), Ending> {
+        let picture = (Output::Light, self.layout());
+        let others = self.outputs.iter().map(|output| {
+            let [width, height] = self.eye_size();
+            (*output, Layout::packed(output.format().unwrap_or(self.format), width, height))
+        });
+        let (mut places, mut end) = (Vec::new(), 0usize);
+        for (output, layout) in std::iter::once(picture).chain(others) {
+            let (bytes, _) = layout.check()?;
+            let begin = end;
+            end = end.saturating_add(bytes.div_ceil(4));
+            places.push(Place { output, layout, words: begin..end });
+        }
+        Ok((places, end.saturating_mul(4)))
+    }
+
+    /// Renders a frame into pixels of as many bytes as [`Self::places`] says; all parameters of the scene that it
+    /// shows. Errors: those of the scene and of the device; the end that a signal asks for.
+    pub fn render(
+        &self,
+        frame: u32,
+        pixels: &mut [u32],
+        renderer: &mut Renderer,
+        lost: &mut u32,
+        signals: &Signals,
+    ) -> Result<Made, Ending> {
+        let (region, [width, height]) = self.show(frame, renderer)?;
+        let (places, _) = self.places()?;
+        let asked = |ending| signals.check().err().unwrap_or(ending);
+        if places.len() > 1 {
+            let rendered = recovering(renderer, lost, |renderer| {
+                let mut rest = &mut *pixels;
+                let mut targets = Vec::new();
+                for place in &places {
+                    let (here, behind) = std::mem::take(&mut rest).split_at_mut(place.words.len());
+                    rest = behind;
+                    let target = ImageMut::new(place.layout, bytemuck::cast_slice_mut(here))?;
+                    targets.push(OutputTarget { output: place.output, target, transparent: self.transparent });
+                }
+                renderer.render_outputs(targets, region, &mut |_| !signals.has_come())
+            });
+            rendered.map_err(asked)?;
+        } else {
+            for (eye, layout, begin) in self.eyes()? {
+                if let Some(eye) = eye {
+                    renderer.scene.camera.eye = eye;
+                }
+                let rendered = recovering(renderer, lost, |renderer| {
+                    let bytes: &mut [u8] = bytemuck::cast_slice_mut(pixels);
+                    let mut image = ImageMut::new(layout, bytes.get_mut(begin..).unwrap_or_default())?;
+                    renderer.render(&mut image, self.transparent, region, &mut |_| !signals.has_come())
+                });
+                rendered.map_err(asked)?;
+            }
+        }
+        let whole = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        Ok(renderer.scene.made(&region.unwrap_or(whole)))
+    }
+
+    /// Each eye's picture in the frame, and the byte at which it begins; one without an eye is all of it.
+    fn eyes(&self) -> Result<Vec<(Option<Eye>, Layout, usize)>, Ending> {
+        let (whole, one) = (self.layout(), self.eye_layout());
+        let (bytes, row) = one.check()?;
+        Ok(match self.stereo {
+            None => vec![(None, whole, 0)],
+            Some(Stereo::TopBottom) => vec![(Some(Eye::Left), one, 0), (Some(Eye::Right), one, bytes)],
+            Some(Stereo::SideBySide) => {
+                let one = Layout { row_stride: 2 * row as i64, ..one };
+                vec![(Some(Eye::Left), one, 0), (Some(Eye::Right), one, row.unsigned_abs())]
+            }
+        })
+    }
+
+    /// Renders a frame small, into an image of its own, and not its outputs. Errors: as [`Self::render`].
+    pub fn try_small(
+        &self,
+        frame: u32,
+        small: Layout,
+        renderer: &mut Renderer,
+        signals: &Signals,
+    ) -> Result<(), Ending> {
+        self.show(frame, renderer)?;
+        let (bytes, _) = small.check()?;
+        let mut pixels = vec![0u32; bytes.div_ceil(4)];
+        let mut image = ImageMut::new(small, bytemuck::cast_slice_mut(&mut pixels))?;
+        let rendered = renderer.render(&mut image, self.transparent, None, &mut |_| !signals.has_come());
+        signals.check()?;
+        Ok(rendered?)
+    }
+
+    /// Whether frames are panoramas, whose video says so to players, as the first one tells.
+    pub fn is_panorama(&self, first: u32, renderer: &mut Renderer) -> Result<bool, Ending> {
+        self.show(first, renderer)?;
+        Ok(renderer.scene.camera.projection == Projection::Equirect)
+    }
+
+    /// The part of the whole sphere that a frame shows, of one: from its left, top, right and bottom border.
+    pub fn margins(&self) -> [f64; 4] {
+        let [full_width, full_height] = self.size.map(f64::from);
+        match self.tile {
+            None => [0.0; 4],
+            Some(tile) => {
+                let [x, y, width, height] = tile.map(f64::from);
+                [x / full_width, y / full_height, 1.0 - (x + width) / full_width, 1.0 - (y + height) / full_height]
+            }
+        }
+    }
+}
+
+impl Place {
+    /// The image, in the pixels of its frame.
+    pub fn image<'a>(&self, pixels: &'a [u32]) -> bhr::error::Result<ImageRef<'a>> {
+        ImageRef::new(self.layout, bytemuck::cast_slice(pixels.get(self.words.clone()).unwrap_or_default()))
+    }
+}

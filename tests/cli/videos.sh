@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+# videos.sh -- the tests of videos that `bhr render` makes through ffmpeg. Sourced by tests/cli/run, whose $scratch,
+# $bhr and functions it uses.
+# shellcheck shell=bash
+
+# Three seconds in pieces of 16 frames, the last one longer.
+video_frames=72
+sed "s/^duration = .*/duration = 3/; s/^width = .*/width = 32/; s/^height = .*/height = 32/" "$scratch/dome.toml" \
+    >"$scratch/video.toml"
+
+video() {
+    timeout 300 "$bhr" render "$scratch/video.toml" --backend cpu --progress plain --keyframes 16 "$@"
+}
+
+# frames_in FILE: the frames that a player finds.
+frames_in() {
+    ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=nb_read_frames -of csv=p=0 "$1"
+}
+
+# The folder has the video of an undisturbed run, its manifest, and nothing else.
+only_the_video() {
+    local names
+    names=$(cd -- "$1" && find . -type f | sort | tr '\n' ' ')
+    [ "$names" = "./v.manifest.jsonl ./v.mp4 " ] || { echo "$names" && return 1; }
+    cmp "$1/v.mp4" "$scratch/video/v.mp4" && [ "$(frames_in "$1/v.mp4")" -eq "$video_frames" ]
+}
+
+a_video() {
+    video --out "$scratch/video/v.mp4" >"$scratch/said" &&
+        [ "$(grep -c 'v.mp4' "$scratch/said")" -eq "$video_frames" ] &&
+        only_the_video "$scratch/video" && video --out "$scratch/video/v.mp4" >"$scratch/said" &&
+        [ "$(grep -c 'was there' "$scratch/said")" -eq "$video_frames" ]
+}
+
+# Its frames are those of pictures, but for what the codec loses: 38 dB is a faint loss.
+as_pictures() {
+    local frame=37 found
+    video --out "$scratch/video.png" --frames "$frame" >/dev/null &&
+        ffmpeg -v error -y -i "$scratch/video/v.mp4" -vf "select=eq(n\\,$frame),scale=in_color_matrix=bt709" \
+            -vframes 1 "$scratch/video.frame.png" || return 1
+    found=$(compare -metric PSNR "$scratch/video.png" "$scratch/video.frame.png" null: 2>&1)
+    echo "PSNR $found"
+    python3 -c 'import sys; sys.exit(not float(sys.argv[1]) > 38)' "${found%% *}"
+}
+
+# Killed at any moment, its processes as well where a farm does so: all that was noted plays, and in the end the video
+# is the one of an undisturbed run.
+killed_videos() {
+    local folder=$scratch/killed-video i pid noted found runs=3
+    ! runs_all || runs=30
+    for ((i = 0; i < runs; i++)); do
+        video --out "$folder/v.mp4" --progress none &
+        pid=$!
+        sleep "0.$((RANDOM % 9))"
+        sleep "$((i % 2))"
+        pkill -KILL -P "$pid"
+        wait "$pid" 2>/dev/null
+        [ ! -e "$folder/v.mp4" ] || break
+        [ $((i % 3)) -ne 2 ] || pkill -KILL -f "file:$folder"
+        noted=$(python3 -c 'import json, sys
+lines = [json.loads(line) for line in sys.stdin if line.endswith("}\n")]
+print(max([0] + [line.get("frames", 0) for line in lines]))' <"$folder/v.manifest.jsonl" 2>/dev/null || echo 0)
+        [ "$noted" -gt 0 ] || continue
+        found=$(frames_in "$folder/v.part.mp4" 2>/dev/null)
+        echo "noted $noted, found $found"
+        [ "$found" -ge "$noted" ] || return 1
+    done
+    video --out "$folder/v.mp4" --continue >"$scratch/said" && only_the_video "$folder"
+}
+
+interrupted_video() {
+    local folder=$scratch/interrupted-video found=0 pid
+    rm -rf -- "$folder"
+    "$bhr" render "$scratch/video.toml" --backend cpu --progress plain --keyframes 16 --out "$folder/v.mp4" \
+        >/dev/null 2>"$scratch/said" &
+    pid=$!
+    until grep -qs frames "$folder/v.manifest.jsonl"; do
+        sleep 0.05
+    done
+    kill "-$1" "$pid"
+    wait "$pid" || found=$?
+    cat -- "$scratch/said"
+    # A video that was done before the signal came is no failure.
+    [ "$found" -eq 0 ] || { [ "$found" -eq "$2" ] && grep -q 'run it again' "$scratch/said"; } || return 1
+    [ -z "$(find "$folder" -name '*.piece' -o -name '*.lock')" ] &&
+        video --out "$folder/v.mp4" >"$scratch/said" && only_the_video "$folder"
+}
+
+# Frames of another film are not mixed into one that has been begun.
+another_video() {
+    local folder=$scratch/another-video
+    mkdir -p -- "$folder" && printf 'garbage' >"$folder/v.part.mp4" || return 1
+    printf '{"file":"v.part.mp4","video":"of another","frames":16,"bytes":7}\n{"fil' >"$folder/v.manifest.jsonl"
+    video --out "$folder/v.mp4" >/dev/null && only_the_video "$folder" || return 1
+    # Nor does a note frames_in of what is not there.
+    rm -- "$folder/v.mp4"
+    local video
+    video=$(grep -o '"video":"[0-9a-f]*"' "$folder/v.manifest.jsonl" | tail -1)
+    printf '{"file":"v.part.mp4",%s,"frames":16,"bytes":70000}\n' "$video" >>"$folder/v.manifest.jsonl"
+    video --out "$folder/v.mp4" >/dev/null && only_the_video "$folder"
+}
+
+# A 360-degree film of two eyes says so to players.
+panorama() {
+    sed 's/projection = .*/projection = "equirect"\neye_distance = 0.1/; s/^height = .*/height = 16/; /^fov_y/d' \
+        "$scratch/video.toml" >"$scratch/panorama.toml"
+    local panorama=(timeout 300 "$bhr" render "$scratch/panorama.toml" --backend cpu --progress none --frames 0-3)
+    "${panorama[@]}" --stereo top-bottom --out "$scratch/panorama.mp4" &&
+        ffprobe -v error -show_streams "$scratch/panorama.mp4" | tee "$scratch/said" >/dev/null &&
+        grep -x 'projection=equirectangular' "$scratch/said" && grep -x 'type=top and bottom' "$scratch/said" &&
+        grep -x 'height=32' "$scratch/said" || return 1
+    # 180 degrees are the middle half of the panorama; the picture is that half.
+    "${panorama[@]}" --codec h265 --stereo side-by-side --tile 8,0,16,16 --out "$scratch/half.mp4" &&
+        ffprobe -v error -show_streams "$scratch/half.mp4" | tee "$scratch/said" >/dev/null &&
+        grep -x 'projection=tiled equirectangular' "$scratch/said" && grep -x 'type=side by side' "$scratch/said" ||
+        return 1
+    # The halves of a frame of both eyes are the frames of each.
+    local eye
+    for eye in left right; do
+        sed "s/^eye_distance/eye = \"$eye\"\n&/" "$scratch/panorama.toml" >"$scratch/eye.toml"
+        timeout 300 "$bhr" render "$scratch/eye.toml" --backend cpu --progress none --frames 1 \
+            --out "$scratch/$eye.png" || return 1
+    done
+    timeout 300 "$bhr" render "$scratch/panorama.toml" --backend cpu --progress none --frames 1 --stereo top-bottom \
+        --out "$scratch/both.png" &&
+        timeout 300 "$bhr" render "$scratch/panorama.toml" --backend cpu --progress none --frames 1 \
+            --stereo side-by-side --out "$scratch/beside.png" &&
+        convert "$scratch/left.png" "$scratch/right.png" -append "$scratch/expected.png" &&
+        [ "$(compare -metric AE "$scratch/both.png" "$scratch/expected.png" null: 2>&1)" = 0 ] &&
+        convert "$scratch/left.png" "$scratch/right.png" +append "$scratch/expected.png" &&
+        [ "$(compare -metric AE "$scratch/beside.png" "$scratch/expected.png" null: 2>&1)" = 0 ] &&
+        [ "$(compare -metric AE "$scratch/left.png" "$scratch/right.png" null: 2>&1)" != 0 ]
+}
+
+codecs() {
+    local of name pixels
+    for of in "c.mp4 h265 yuv420p10le" "c.mov prores yuv422p10le" "c.mov h264 yuv420p" "t.mov prores4444 yuva444p"; do
+        read -r name codec pixels <<<"$of"
+        local more=()
+        [ "$name" != t.mov ] || more=(--transparent)
+        rm -f -- "$scratch/codecs/$name"
+        video --out "$scratch/codecs/$name" --frames 0-1 --codec "$codec" "${more[@]}" >/dev/null &&
+            [[ $(ffprobe -v error -show_entries stream=pix_fmt -of csv=p=0 "$scratch/codecs/$name") == "$pixels"* ]] &&
+            [ "$(frames_in "$scratch/codecs/$name")" -eq 2 ] || return 1
+    done
+}
+
+mistakes_of_videos() {
+    local out=$scratch/mistakes/v.mp4
+    status 64 video --out "$out" --codec prores || return 1
+    status 64 video --out "$out" --codec vp9 || return 1
+    status 64 video --out "$out" --quality 52 || return 1
+    status 64 video --out "$out" --size 31x32 || return 1
+    status 64 video --out "$out" --transparent || return 1
+    status 64 video --out "$out" --keyframes 15 || return 1
+    status 64 video --out "$out" --outputs depth || return 1
+    status 64 video --out "$scratch/mistakes/v.####.mp4" || return 1
+    status 64 video --out "$scratch/mistakes/v.####.png" --quality 3 || return 1
+    status 64 video --out "$out" --stereo cross-eyed || return 1
+    # A dome has no two eyes.
+    status 65 video --out "$out" --stereo top-bottom || return 1
+    status 74 video --out "$out" --ffmpeg "$scratch/nowhere" && grep -q 'not found' "$scratch/said" || return 1
+    status 74 video --out "$out" --ffmpeg false || return 1
+    printf '#!/bin/sh\ncat >/dev/null\necho no such codec >&2\nexit 1\n' >"$scratch/bad-ffmpeg"
+    chmod +x "$scratch/bad-ffmpeg"
+    status 74 video --out "$out" --ffmpeg "$scratch/bad-ffmpeg" && grep -q 'no such codec' "$scratch/said" || return 1
+    # One that makes fewer frames than it was given.
+    printf '#!/bin/sh\nexec ffmpeg -to 0.5 "$@"\n' >"$scratch/short-ffmpeg"
+    chmod +x "$scratch/short-ffmpeg"
+    status 74 video --out "$out" --ffmpeg "$scratch/short-ffmpeg" || return 1
+    [ ! -e "$out" ] && [ -z "$(find "$scratch/mistakes" -name '*.piece' -o -name '*.lock')" ]
+}
+
+# Layers beside the light, under the names of bhr_save_outputs.
+layers() {
+    local out=$scratch/layers.exr name
+    render --out "$out" --frames 2 --outputs depth,position,position1,disk,sky,steps >/dev/null || return 1
+    for name in depth.Z position.x position1.order disk.azimuth sky.g steps.Y; do
+        grep -aqF "$name" "$out" || { echo "no $name" && return 1; }
+    done
+    # The light is the same without layers; another list is another file.
+    render --out "$out" --frames 2 --outputs depth | grep -v 'was there' &&
+        status 64 render --out "$out" --frames 2 --outputs depths &&
+        status 64 render --out "$out" --frames 2 --outputs position16 &&
+        status 64 render --out "$out" --frames 2 --outputs sky1 &&
+        status 64 render --out "$scratch/layers.png" --frames 2 --outputs depth
+}
