@@ -31,40 +31,6 @@
 #include <mach-o/dyld.h>
 #endif
 
-const Choice BACKENDS[] = {{"auto", BHR_BACKEND_AUTO},   {"cpu", BHR_BACKEND_CPU},     {"vulkan", BHR_BACKEND_VULKAN},
-                           {"metal", BHR_BACKEND_METAL}, {"d3d12", BHR_BACKEND_D3D12}, {"gl", BHR_BACKEND_GL},
-                           {NULL, 0}};
-const Choice METHODS[] = {
-    {"auto", BHR_METHOD_AUTO}, {"rk4", BHR_METHOD_RK4}, {"adaptive", BHR_METHOD_ADAPTIVE}, {NULL, 0}};
-const Choice VOLUME_RESOLUTIONS[] = {
-    {"full", BHR_VOLUME_RESOLUTION_FULL}, {"half", BHR_VOLUME_RESOLUTION_HALF}, {NULL, 0}};
-const Choice MOTIONS[] = {{"static", BHR_MOTION_STATIC},
-                          {"freefall", BHR_MOTION_FREE_FALL},
-                          {"orbit", BHR_MOTION_ORBIT},
-                          {"velocity", BHR_MOTION_VELOCITY},
-                          {NULL, 0}};
-const Choice PRESETS[] = {{"cinematic", BHR_PRESET_CINEMATIC},
-                          {"physical", BHR_PRESET_PHYSICAL},
-                          {"observatory", BHR_PRESET_OBSERVATORY},
-                          {"teaching", BHR_PRESET_TEACHING},
-                          {NULL, 0}};
-const Choice PRESET_MATTERS[] = {{"auto", BHR_PRESET_MATTER_AUTO},
-                                 {"thin", BHR_PRESET_MATTER_THIN},
-                                 {"deep", BHR_PRESET_MATTER_DEEP},
-                                 {NULL, 0}};
-const Choice TONE_MAPS[] = {
-    {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX}, {NULL, 0}};
-const Choice COLOUR_MAPS[] = {{"none", BHR_COLOUR_MAP_NONE}, {"afmhot", BHR_COLOUR_MAP_AFMHOT}, {NULL, 0}};
-const Choice VIEWS[] = {{"light", BHR_VIEW_LIGHT}, {"redshift", BHR_VIEW_REDSHIFT},     {"order", BHR_VIEW_ORDER},
-                        {"steps", BHR_VIEW_STEPS}, {"deflection", BHR_VIEW_DEFLECTION}, {"metric", BHR_VIEW_METRIC},
-                        {"optical_depth", BHR_VIEW_OPTICAL_DEPTH}, {"intensity", BHR_VIEW_INTENSITY}, {NULL, 0}};
-const Choice PROJECTIONS[] = {{"perspective", BHR_PROJECTION_PERSPECTIVE},
-                              {"fisheye", BHR_PROJECTION_FISHEYE},
-                              {"equirect", BHR_PROJECTION_EQUIRECT},
-                              {"cube", BHR_PROJECTION_CUBE},
-                              {"frustum", BHR_PROJECTION_FRUSTUM},
-                              {NULL, 0}};
-
 const char *choice_name(const Choice *choices, int32_t value) {
     for (; choices->name != NULL; choices++) {
         if (choices->value == value) {

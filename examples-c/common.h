@@ -24,9 +24,9 @@ typedef struct Choice {
     int32_t     value;
 } Choice;
 
-/* ---- names ---- */
-extern const Choice BACKENDS[], METHODS[], VOLUME_RESOLUTIONS[], MOTIONS[], PRESETS[], PRESET_MATTERS[], TONE_MAPS[],
-    COLOUR_MAPS[], VIEWS[], PROJECTIONS[];
+/* ---- names: all lists are in fields.c ---- */
+extern const Choice BACKENDS[], PROJECTIONS[], MOTIONS[], EYES[], PRESETS[], PRESET_MATTERS[], METHODS[],
+    VOLUME_RESOLUTIONS[], VIEWS[], TONE_MAPS[], COLOUR_MAPS[];
 const char *choice_name(const Choice *choices, int32_t value); /* "?" for none of them */
 
 /* ---- reports ---- */

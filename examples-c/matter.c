@@ -2,81 +2,31 @@
 /* matter.c -- see matter.h. */
 #include "matter.h"
 
+#include "fields.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_ITEM 96 /* characters of FIELD=X */
 
-typedef enum FieldKind {
-    FIELD_WORD,    /* uint32_t: gets the bit of the first of `choices`; the word alone, without a value */
-    FIELD_NO_WORD, /* the same; takes the bit away */
-    FIELD_CHOICE,  /* int32_t: the value of one of `choices` */
-    FIELD_DOUBLE,  /* double */
-    FIELD_DEGREES, /* double: radians, written in degrees */
-    FIELD_COLOUR,  /* double[3], written R/G/B */
-    FIELD_UINT64   /* uint64_t */
-} FieldKind;
+/* A word that takes a bit away; the fields' own words give one. */
+typedef struct Unword {
+    const char *name, *about;
+    size_t      offset;
+    uint32_t    bit;
+} Unword;
 
-typedef struct Field {
-    const char   *name;
-    FieldKind     kind;
-    size_t        offset;
-    const Choice *choices;
-} Field;
+/* A struct as text: its fields, and a word more where it has one. */
+typedef struct Syntax {
+    const Field  *fields;
+    const Choice *first;  /* of the field that its text begins with, which no key sets; NULL: none */
+    const Unword *unword; /* NULL: none */
+} Syntax;
 
-const Choice VOLUME_KINDS[] = {{"disk", BHR_VOLUME_DISK}, {"torus", BHR_VOLUME_TORUS}, {"halo", BHR_VOLUME_HALO},
-                               {"jet", BHR_VOLUME_JET},   {NULL, 0}};
-static const Choice FLOWS[] = {{"keplerian", BHR_FLOW_KEPLERIAN}, {"angular-momentum", BHR_FLOW_ANGULAR_MOMENTUM},
-                               {"outflow", BHR_FLOW_OUTFLOW},     {NULL, 0}};
-static const Choice VOLUME_RETROGRADE[] = {{"retrograde", BHR_VOLUME_RETROGRADE}, {NULL, 0}};
-static const Choice POWER_LAW[] = {{"power-law", BHR_VOLUME_POWER_LAW}, {NULL, 0}};
-static const Choice SPOT_RETROGRADE[] = {{"retrograde", BHR_HOT_SPOT_RETROGRADE}, {NULL, 0}};
-static const Choice THERMAL[] = {{"thermal", BHR_HOT_SPOT_THERMAL}, {NULL, 0}};
-
-#define OF_VOLUME(member) offsetof(BhrVolume, member)
-#define OF_SPOT(member) offsetof(BhrHotSpot, member)
-
-/* A new field of a struct of the library is one line here. */
-static const Field VOLUME_FIELDS[] = {
-    {"retrograde", FIELD_WORD, OF_VOLUME(flags), VOLUME_RETROGRADE},
-    {"power-law", FIELD_WORD, OF_VOLUME(flags), POWER_LAW},
-    {"thermal", FIELD_NO_WORD, OF_VOLUME(flags), POWER_LAW},
-    {"flow", FIELD_CHOICE, OF_VOLUME(flow), FLOWS},
-    {"inner-radius", FIELD_DOUBLE, OF_VOLUME(inner_radius), NULL},
-    {"outer-radius", FIELD_DOUBLE, OF_VOLUME(outer_radius), NULL},
-    {"radius", FIELD_DOUBLE, OF_VOLUME(radius), NULL},
-    {"width", FIELD_DOUBLE, OF_VOLUME(width), NULL},
-    {"thickness", FIELD_DOUBLE, OF_VOLUME(thickness), NULL},
-    {"opening", FIELD_DEGREES, OF_VOLUME(opening), NULL},
-    {"slope", FIELD_DOUBLE, OF_VOLUME(slope), NULL},
-    {"absorption", FIELD_DOUBLE, OF_VOLUME(absorption), NULL},
-    {"temperature", FIELD_DOUBLE, OF_VOLUME(temperature), NULL},
-    {"temperature-slope", FIELD_DOUBLE, OF_VOLUME(temperature_slope), NULL},
-    {"spectral-index", FIELD_DOUBLE, OF_VOLUME(spectral_index), NULL},
-    {"tint", FIELD_COLOUR, OF_VOLUME(tint), NULL},
-    {"brightness", FIELD_DOUBLE, OF_VOLUME(brightness), NULL},
-    {"sub-keplerian", FIELD_DOUBLE, OF_VOLUME(sub_keplerian), NULL},
-    {"infall", FIELD_DOUBLE, OF_VOLUME(infall), NULL},
-    {"angular-momentum", FIELD_DOUBLE, OF_VOLUME(angular_momentum), NULL},
-    {"speed", FIELD_DOUBLE, OF_VOLUME(speed), NULL},
-    {"turbulence", FIELD_DOUBLE, OF_VOLUME(turbulence), NULL},
-    {"clumping", FIELD_DOUBLE, OF_VOLUME(clumping), NULL},
-    {"heating", FIELD_DOUBLE, OF_VOLUME(heating), NULL},
-    {"seed", FIELD_UINT64, OF_VOLUME(seed), NULL},
-};
-
-static const Field HOT_SPOT_FIELDS[] = {
-    {"retrograde", FIELD_WORD, OF_SPOT(flags), SPOT_RETROGRADE},
-    {"thermal", FIELD_WORD, OF_SPOT(flags), THERMAL},
-    {"radius", FIELD_DOUBLE, OF_SPOT(radius), NULL},
-    {"size", FIELD_DOUBLE, OF_SPOT(size), NULL},
-    {"azimuth", FIELD_DEGREES, OF_SPOT(azimuth), NULL},
-    {"absorption", FIELD_DOUBLE, OF_SPOT(absorption), NULL},
-    {"temperature", FIELD_DOUBLE, OF_SPOT(temperature), NULL},
-    {"spectral-index", FIELD_DOUBLE, OF_SPOT(spectral_index), NULL},
-    {"tint", FIELD_COLOUR, OF_SPOT(tint), NULL},
-    {"brightness", FIELD_DOUBLE, OF_SPOT(brightness), NULL},
-};
+static const Unword THERMAL = {"thermal", "the light is a blackbody's: takes power-law back",
+                               offsetof(BhrVolume, flags), BHR_VOLUME_POWER_LAW};
+static const Syntax VOLUME = {VOLUME_FIELDS, VOLUME_KINDS, &THERMAL};
+static const Syntax HOT_SPOT = {HOT_SPOT_FIELDS, NULL, NULL};
 
 /* ---- values ---- */
 
@@ -89,9 +39,9 @@ static const Choice *find_choice(const Choice *choices, const char *text) {
     return NULL;
 }
 
-/* 1 when all of `text` is `count` numbers with slashes between them. */
+/* 1 when all of `text` is `count` numbers, four at most, with slashes between them. */
 static int read_numbers(const char *text, int count, double *out) {
-    double value[3];
+    double value[4];
     for (int i = 0; i < count; i++) {
         text = option_read_double(text, &value[i]);
         if (text == NULL || *text != (i + 1 < count ? '/' : '\0')) {
@@ -108,46 +58,57 @@ static int read_value(const Field *field, const char *value, void *out) {
     char         *target = (char *)out + field->offset;
     const Choice *choice;
     double        number;
-    if ((value == NULL) != (field->kind == FIELD_WORD || field->kind == FIELD_NO_WORD)) {
+    uint64_t      whole;
+    if ((value == NULL) != (field->kind == OPTION_BIT)) {
         return 0;
     }
     switch (field->kind) {
-    case FIELD_WORD:
+    case OPTION_BIT:
         *(uint32_t *)(void *)target |= (uint32_t)field->choices[0].value;
         return 1;
-    case FIELD_NO_WORD:
-        *(uint32_t *)(void *)target &= ~(uint32_t)field->choices[0].value;
-        return 1;
-    case FIELD_CHOICE:
+    case OPTION_CHOICE:
         choice = find_choice(field->choices, value);
         if (choice != NULL) {
             *(int32_t *)(void *)target = choice->value;
         }
         return choice != NULL;
-    case FIELD_UINT64:
+    case OPTION_UINT:
+        if (!option_read_uint64(value, &whole) || whole > UINT32_MAX) {
+            return 0;
+        }
+        *(uint32_t *)(void *)target = (uint32_t)whole;
+        return 1;
+    case OPTION_UINT64:
         return option_read_uint64(value, (uint64_t *)(void *)target);
-    case FIELD_COLOUR:
+    case OPTION_PAIR:
+        return read_numbers(value, 2, (double *)(void *)target);
+    case OPTION_VECTOR:
         return read_numbers(value, 3, (double *)(void *)target);
-    case FIELD_DOUBLE:
-    case FIELD_DEGREES:
+    case OPTION_FOUR:
+        return read_numbers(value, 4, (double *)(void *)target);
+    case OPTION_DOUBLE:
+    case OPTION_DEGREES:
         if (!read_numbers(value, 1, &number)) {
             return 0;
         }
-        *(double *)(void *)target = field->kind == FIELD_DEGREES ? number * PI / 180.0 : number;
+        *(double *)(void *)target = field->kind == OPTION_DEGREES ? number * PI / 180.0 : number;
         return 1;
+    default:
+        return 0;
     }
-    return 0;
 }
 
 static void print_value_name(FILE *out, const Field *field) {
     switch (field->kind) {
-    case FIELD_WORD:
-    case FIELD_NO_WORD: fputs("no value", out); return;
-    case FIELD_COLOUR: fputs("R/G/B", out); return;
-    case FIELD_UINT64: fputs("a whole number", out); return;
-    case FIELD_DEGREES: fputs("degrees", out); return;
-    case FIELD_DOUBLE: fputs("a number", out); return;
-    case FIELD_CHOICE: break;
+    case OPTION_BIT: fputs("no value", out); return;
+    case OPTION_PAIR: fputs("X/Y", out); return;
+    case OPTION_VECTOR: fputs("R/G/B", out); return;
+    case OPTION_FOUR: fputs("X/Y/Z/W", out); return;
+    case OPTION_UINT:
+    case OPTION_UINT64: fputs("a whole number", out); return;
+    case OPTION_DEGREES: fputs("degrees", out); return;
+    case OPTION_CHOICE: break;
+    default: fputs("a number", out); return;
     }
     for (const Choice *choice = field->choices; choice->name != NULL; choice++) {
         fprintf(out, "%s%s", choice == field->choices ? "" : "|", choice->name);
@@ -156,39 +117,67 @@ static void print_value_name(FILE *out, const Field *field) {
 
 /* ---- texts ---- */
 
-static int refuse_field(const char *name, const char *text, const char *item, const Field *fields, size_t count) {
-    fprintf(stderr, "%s '%s': there is no field '%s'; the fields are", name, text, item);
-    for (size_t i = 0; i < count; i++) {
-        fprintf(stderr, " %s", fields[i].name);
+static int is_key(const Syntax *syntax, const Field *field) {
+    return syntax->first == NULL || field->choices != syntax->first;
+}
+
+/* Says what keys there are, with what bhr.h says of each. */
+static int refuse_field(const char *name, const char *text, const char *item, const Syntax *syntax) {
+    fprintf(stderr, "%s '%s': there is no field '%s'; the fields are\n", name, text, item);
+    for (const Field *field = syntax->fields; field->option != NULL; field++) {
+        if (is_key(syntax, field)) {
+            fprintf(stderr, "  %s: ", FIELD_NAME(field));
+            print_value_name(stderr, field);
+            options_print_help(stderr, field->about);
+            if (field->range != NULL && strstr(field->about, " .. ") == NULL) {
+                fprintf(stderr, "; %s", field->range);
+            }
+            fputc('\n', stderr);
+        }
     }
-    fputc('\n', stderr);
+    if (syntax->unword != NULL) {
+        fprintf(stderr, "  %s: no value\n        %s\n", syntax->unword->name, syntax->unword->about);
+    }
+    return EXIT_USAGE;
+}
+
+static int refuse_value(const char *name, const char *text, const char *item, const char *value) {
+    fprintf(stderr, "%s '%s': '%s' is no value for %s, which takes ", name, text, value != NULL ? value : "", item);
     return EXIT_USAGE;
 }
 
 /* One FIELD=X, or a word. 0, or EXIT_USAGE after a message with all of the option's text. */
-static int read_item(const char *name, const char *text, char *item, const Field *fields, size_t count, void *out) {
-    char *value = strchr(item, '=');
+static int read_item(const char *name, const char *text, char *item, const Syntax *syntax, void *out) {
+    const Unword *unword = syntax->unword;
+    char         *value = strchr(item, '=');
     if (value != NULL) {
         *value++ = '\0';
     }
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(fields[i].name, item) == 0) {
-            if (read_value(&fields[i], value, out)) {
+    for (const Field *field = syntax->fields; field->option != NULL; field++) {
+        if (is_key(syntax, field) && strcmp(FIELD_NAME(field), item) == 0) {
+            if (read_value(field, value, out)) {
                 return 0;
             }
-            fprintf(stderr, "%s '%s': '%s' is no value for %s, which takes ", name, text, value != NULL ? value : "",
-                    item);
-            print_value_name(stderr, &fields[i]);
+            const int result = refuse_value(name, text, item, value);
+            print_value_name(stderr, field);
             fputc('\n', stderr);
-            return EXIT_USAGE;
+            return result;
         }
     }
-    return refuse_field(name, text, item, fields, count);
+    if (unword != NULL && strcmp(unword->name, item) == 0) {
+        if (value != NULL) {
+            const int result = refuse_value(name, text, item, value);
+            fputs("no value\n", stderr);
+            return result;
+        }
+        *(uint32_t *)(void *)((char *)out + unword->offset) &= ~unword->bit;
+        return 0;
+    }
+    return refuse_field(name, text, item, syntax);
 }
 
 /* Items with commas between them, from `rest`, a part of `text`, on. */
-static int read_items(const char *name, const char *text, const char *rest, const Field *fields, size_t count,
-                      void *out) {
+static int read_items(const char *name, const char *text, const char *rest, const Syntax *syntax, void *out) {
     for (;;) {
         char         item[MOST_ITEM + 1];
         const size_t length = strcspn(rest, ",");
@@ -199,7 +188,7 @@ static int read_items(const char *name, const char *text, const char *rest, cons
         }
         memcpy(item, rest, length);
         item[length] = '\0';
-        const int result = read_item(name, text, item, fields, count, out);
+        const int result = read_item(name, text, item, syntax, out);
         if (result != 0 || rest[length] == '\0') {
             return result;
         }
@@ -260,8 +249,7 @@ int volume_read(const char *name, const char *text, double turbulence, BhrVolume
             }
             out->turbulence = turbulence;
             return text[length] == '\0' ? 0
-                                        : read_items(name, text, text + length + 1, VOLUME_FIELDS,
-                                                     COUNT_OF(VOLUME_FIELDS), out);
+                                        : read_items(name, text, text + length + 1, &VOLUME, out);
         }
     }
     fprintf(stderr, "%s '%s': it begins with disk, torus, halo or jet\n", name, text);
@@ -271,7 +259,7 @@ int volume_read(const char *name, const char *text, double turbulence, BhrVolume
 int hot_spot_read(const char *name, const char *text, BhrHotSpot *out) {
     const BhrStatus status = bhr_hot_spot_init(out, sizeof *out);
     return status < 0 ? report_failure("begin a hot spot", status)
-                      : read_items(name, text, text, HOT_SPOT_FIELDS, COUNT_OF(HOT_SPOT_FIELDS), out);
+                      : read_items(name, text, text, &HOT_SPOT, out);
 }
 
 static int count_texts(const char *name, const TextList *texts, uint32_t most) {

@@ -103,7 +103,7 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
          IMAGE},
         {{"--volume", OPTION_TEXTS, &s->volumes, VOLUME_VALUE,
           "matter: disk, torus, halo or jet, and fields as BhrVolume has them, with - for _; its light is a power law"
-          "\n        of the frequency, its absorption is that at 230 GHz; may be given again", NULL, NULL},
+          " of the frequency, its absorption is that at 230 GHz; may be given again", NULL, NULL},
          IMAGE},
         {{"--frequency", OPTION_TEXT, &s->frequencies, "GHZ,...", "of the images", NULL, "1 to 1e5, 8 at most"},
          IMAGE},

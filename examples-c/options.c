@@ -296,11 +296,25 @@ static void print_default(FILE *out, const Option *option) {
     }
 }
 
+void options_print_help(FILE *out, const char *words) {
+    size_t column = 120;
+    while (*words != '\0') {
+        const size_t length = strcspn(words, " ");
+        if (column + 1 + length > 120) {
+            fputs("\n       ", out);
+            column = 7;
+        }
+        fprintf(out, " %.*s", (int)length, words);
+        column += 1 + length;
+        words += length + strspn(words + length, " ");
+    }
+}
+
 void options_print(FILE *out, const Option *options, size_t count) {
     for (size_t i = 0; i < count; i++) {
         fprintf(out, "  %s", options[i].name);
         print_value_name(out, &options[i]);
-        fprintf(out, "\n        %s", options[i].help);
+        options_print_help(out, options[i].help);
         if (options[i].range != NULL) {
             fprintf(out, "; %s", options[i].range);
         }

@@ -54,6 +54,9 @@ int options_parse(const Option *options, size_t count, int argc, char **argv);
  * of no choice are no defaults. */
 void options_print(FILE *out, const Option *options, size_t count);
 
+/* Words on lines of their own, of at most 120 columns, each behind 8 blanks; the last one is not ended. */
+void options_print_help(FILE *out, const char *words);
+
 /* Puts the number that `text` begins with into *out and returns where it ends; NULL when there is none or it
  * overflows. */
 const char *option_read_double(const char *text, double *out);

@@ -2,25 +2,16 @@
 /* scene_options.c -- see scene_options.h. */
 #include "scene_options.h"
 
+#include "fields.h"
 #include "matter.h"
 
 #include <math.h>
 #include <string.h>
 
-static const Choice RETROGRADE[] = {{"retrograde", BHR_DISK_RETROGRADE}, {NULL, 0}};
-static const Choice PLUNGES[] = {{"plunges", BHR_DISK_PLUNGES}, {NULL, 0}};
-static const Choice EMISSION_LAWS[] = {
-    {"isotropic", BHR_DISK_ISOTROPIC}, {"limb-darkened", BHR_DISK_LIMB_DARKENED}, {NULL, 0}};
-static const Choice DISK_REFERENCES[] = {{"hottest", BHR_DISK_AT_HOTTEST}, {"median", BHR_DISK_AT_MEDIAN}, {NULL, 0}};
-static const Choice SKY_PARTS[] = {{"stars", BHR_SKY_STARS}, {"procedural", BHR_SKY_PROCEDURAL},
-                                   {"milky-way", BHR_SKY_MILKY_WAY}, {"map", BHR_SKY_MAP}, {"grid", BHR_SKY_GRID},
-                                   {NULL, 0}};
-static const Choice EYES[] = {
-    {"middle", BHR_EYE_MIDDLE}, {"left", BHR_EYE_LEFT}, {"right", BHR_EYE_RIGHT}, {NULL, 0}};
 static const Choice EFFECTS[] = {{"doppler", BHR_EFFECT_DOPPLER_SHIFT}, {"gravity", BHR_EFFECT_GRAVITY_SHIFT},
                                  {"beaming", BHR_EFFECT_BEAMING}, {"delay", BHR_EFFECT_LIGHT_DELAY}, {NULL, 0}};
 
-/* ---- the table ---- */
+/* ---- the tables ---- */
 
 typedef struct SceneOption {
     const char   *name;
@@ -34,7 +25,7 @@ typedef struct SceneOption {
 
 #define AT(member) offsetof(SceneInput, member)
 
-/* A new field of a struct of the library is one line here. */
+/* Options that are no field of a struct, or not only. */
 static const SceneOption TABLE[] = {
     {"--preset", SCENE_PRESET, OPTION_CHOICE, AT(preset), NULL, NULL, "a look; other options change it", PRESETS},
     {"--matter", SCENE_PRESET, OPTION_CHOICE, AT(preset_options.matter), NULL, NULL,
@@ -69,70 +60,59 @@ static const SceneOption TABLE[] = {
      "of the two eyes in M, for --eye; 0: no stereo", NULL},
 
     {"--no-disk", SCENE_DISK, OPTION_UNFLAG, AT(scene.has_disk), NULL, NULL, "leaves the disk out", NULL},
-    {"--retrograde", SCENE_DISK, OPTION_BIT, AT(scene.disk.flags), NULL, NULL, "the disk turns towards -azimuth",
-     RETROGRADE},
-    {"--plunges", SCENE_DISK, OPTION_BIT, AT(scene.disk.flags), NULL, NULL, "the disk shines to the horizon", PLUNGES},
-    {"--disk-inner", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.inner_radius), "R", "0 to 1e6",
-     "in M; 0: the innermost stable orbit or the horizon", NULL},
-    {"--disk-outer", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.outer_radius), "R", "to 1e6", "in M", NULL},
-    {"--disk-temperature", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.temperature), "K", "500 to 1e9",
-     "of the ring that --disk-reference names", NULL},
-    {"--disk-brightness", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.brightness), "X", "0 to 1e6",
-     "luminance of that ring", NULL},
-    {"--opacity", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.opacity), "X", "0 to 1", "of the disk", NULL},
-    {"--turbulence", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.turbulence), "X", "0 to 1", "structure of the disk",
-     NULL},
-    {"--edge-softness", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.edge_softness), "X", "0 to 1",
-     "of the disk's edges", NULL},
-    {"--disk-reference", SCENE_DISK, OPTION_CHOICE, AT(scene.disk.reference), NULL, NULL,
-     "the ring that has temperature and brightness", DISK_REFERENCES},
-    {"--emission-law", SCENE_DISK, OPTION_CHOICE, AT(scene.disk.emission_law), NULL, NULL,
-     "the disk's light by the angle to its normal", EMISSION_LAWS},
-    {"--seed", SCENE_DISK, OPTION_UINT64, AT(scene.disk.seed), "N", NULL, "of the turbulence", NULL},
     {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
 
     {"--volume", SCENE_MATTER, OPTION_TEXTS, AT(volumes), VOLUME_VALUE, "4 of them",
-     "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B;"
-     "\n        torus,radius=9,infall=0.2,power-law", NULL},
+     "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B "
+     "(disk,help lists them); torus,radius=9,infall=0.2,power-law", NULL},
     {"--hot-spot", SCENE_MATTER, OPTION_TEXTS, AT(hot_spots), HOT_SPOT_VALUE, "8 of them",
-     "a blob in orbit: fields as BhrHotSpot has them; radius=7,size=0.7,azimuth=90", NULL},
+     "a blob in orbit: fields as BhrHotSpot has them (help lists them); radius=7,size=0.7,azimuth=90", NULL},
 
     {"--no-stars", SCENE_SKY, OPTION_UNFLAG, AT(scene.has_sky), NULL, NULL, "makes the sky black", NULL},
-    {"--sky", SCENE_SKY, OPTION_BITS, AT(scene.sky.flags), NULL, NULL, "what is at infinity", SKY_PARTS},
     {"--sky-map", SCENE_SKY, OPTION_TEXT, AT(sky_map), "FILE", NULL, "a picture of the whole sky, .png .ppm .exr",
      NULL},
-    {"--stars-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.stars_brightness), "X", "0 to 1e6", "a factor", NULL},
-    {"--map-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.map_brightness), "X", "0 to 1e6",
-     "a factor on map and Milky Way", NULL},
-    {"--sky-orientation", SCENE_SKY, OPTION_FOUR, AT(scene.sky.orientation), "X,Y,Z,W", "length 1",
-     "a turn from the sky's axes to the scene's", NULL},
-    {"--sky-seed", SCENE_SKY, OPTION_UINT64, AT(scene.sky.seed), "N", NULL, "of the procedural stars", NULL},
-
-    {"--exposure", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.exposure_ev), "EV", "-20 to 20", "stops; 8-bit files only",
-     NULL},
-    {"--bloom", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.bloom), "X", "0 to 1", "glare; 8-bit files only", NULL},
-    {"--beam", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.beam_fwhm), "X", "0 to 1",
-     "width of a telescope's beam, in frame heights; 8-bit files only", NULL},
-    {"--tone-map", SCENE_FILM, OPTION_CHOICE, AT(scene.film.tone_map), NULL, NULL, "8-bit files only", TONE_MAPS},
-    {"--colour-map", SCENE_FILM, OPTION_CHOICE, AT(scene.film.colour_map), NULL, NULL,
-     "colours for the luminance; 8-bit files only", COLOUR_MAPS},
 
     {"--effects", SCENE_EFFECTS, OPTION_BITS, AT(scene.effects), NULL, NULL, "effects of relativity on light",
      EFFECTS},
-    {"--view", SCENE_VIEW, OPTION_CHOICE, AT(scene.view), NULL, NULL, "what a pixel shows", VIEWS},
 
-    {"--method", SCENE_QUALITY, OPTION_CHOICE, AT(scene.quality.method), NULL, NULL, "of integration", METHODS},
-    {"--samples", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.samples_per_pixel), "N", "1 to 256", "per pixel", NULL},
-    {"--max-order", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.max_disk_order), "N", "0 (direct) to 15",
-     "last image of the disk", NULL},
-    {"--max-steps", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.max_steps), "N", "16 to 100000",
-     "integration steps of a ray", NULL},
-    {"--step", SCENE_QUALITY, OPTION_DOUBLE, AT(scene.quality.step), "X", "1e-3 to 0.5; 0: the library's",
-     "the step of --method rk4", NULL},
-    {"--tolerance", SCENE_QUALITY, OPTION_DOUBLE, AT(scene.quality.tolerance), "X", "1e-14 to 1e-3; 0: the library's",
-     "of --method adaptive", NULL},
-    {"--volume-resolution", SCENE_QUALITY, OPTION_CHOICE, AT(scene.quality.volume_resolution), NULL, NULL,
-     "of matter with depth", VOLUME_RESOLUTIONS},
+    {"--view", SCENE_VIEW, OPTION_CHOICE, AT(scene.view), NULL, NULL, "what a pixel shows", VIEWS},
+};
+
+/* The structs whose fields are options, by the fields' names and with the first sentence that bhr.h says of each. */
+static const struct {
+    unsigned     group;
+    size_t       offset; /* of the struct, in SceneInput */
+    const Field *fields;
+    const char  *note; /* behind their help; NULL: none */
+} STRUCTS[] = {
+    {SCENE_DISK, AT(scene.disk), DISK_FIELDS, NULL},
+    {SCENE_SKY, AT(scene.sky), SKY_FIELDS, NULL},
+    {SCENE_FILM, AT(scene.film), FILM_FIELDS, "8-bit files only"},
+    {SCENE_QUALITY, AT(scene.quality), QUALITY_FIELDS, NULL},
+};
+
+/* Fields whose names would not say, on a command line, what has them; and shorter names. */
+static const struct {
+    const Field *fields;
+    const char  *option, *name; /* NULL: no option */
+    const char  *help;          /* NULL: bhr.h's sentence */
+} RENAMED[] = {
+    {DISK_FIELDS, "--retrograde", "--retrograde", "the disk turns towards -azimuth"},
+    {DISK_FIELDS, "--plunges", "--plunges", "the disk shines to the horizon"},
+    {DISK_FIELDS, "--inner-radius", "--disk-inner", "in M; 0: the innermost stable orbit or the horizon"},
+    {DISK_FIELDS, "--outer-radius", "--disk-outer", NULL},
+    {DISK_FIELDS, "--temperature", "--disk-temperature", NULL},
+    {DISK_FIELDS, "--brightness", "--disk-brightness", "luminance of that ring"},
+    {DISK_FIELDS, "--opacity", "--opacity", "of the disk"},
+    {DISK_FIELDS, "--reference", "--disk-reference", NULL},
+    {SKY_FIELDS, "--flags", "--sky", "what is at infinity"},
+    {SKY_FIELDS, "--orientation", "--sky-orientation", NULL},
+    {SKY_FIELDS, "--seed", "--sky-seed", NULL},
+    {FILM_FIELDS, "--exposure-ev", "--exposure", NULL},
+    {FILM_FIELDS, "--beam-fwhm", "--beam", NULL},
+    {QUALITY_FIELDS, "--samples-per-pixel", "--samples", NULL},
+    {QUALITY_FIELDS, "--max-disk-order", "--max-order", NULL},
+    {QUALITY_FIELDS, "--render-scale", NULL, NULL}, /* for windows */
 };
 
 void options_add(Options *options, const Option *list, size_t count) {
@@ -141,13 +121,57 @@ void options_add(Options *options, const Option *list, size_t count) {
     }
 }
 
+/* The value of a field, as --help calls it. */
+static const char *value_name(const Field *field) {
+    switch (field->kind) {
+    case OPTION_DEGREES:
+        return "DEG";
+    case OPTION_PAIR:
+        return "X,Y";
+    case OPTION_VECTOR:
+        return "X,Y,Z";
+    case OPTION_FOUR:
+        return "X,Y,Z,W";
+    case OPTION_UINT:
+    case OPTION_UINT64:
+        return "N";
+    default:
+        return field->unit != NULL && strlen(field->unit) <= 2 ? field->unit : "X";
+    }
+}
+
+static void add_field(Options *options, const Field *fields, const Field *field, char *target, const char *note) {
+    const char *name = field->option, *help = field->about;
+    for (size_t i = 0; i < COUNT_OF(RENAMED); i++) {
+        if (RENAMED[i].fields == fields && strcmp(RENAMED[i].option, field->option) == 0) {
+            name = RENAMED[i].name;
+            help = RENAMED[i].help != NULL ? RENAMED[i].help : help;
+        }
+    }
+    if (name != NULL) {
+        /* The header's sentences often name the range themselves. */
+        const char  *range = strstr(help, " .. ") == NULL && field->range != NULL ? field->range : note;
+        const Option option = {name, field->kind, target + field->offset, value_name(field), help, field->choices,
+                               range};
+        options_add(options, &option, 1);
+    }
+}
+
 void options_add_scene(Options *options, SceneInput *input, unsigned groups) {
-    for (size_t i = 0; i < COUNT_OF(TABLE); i++) {
-        const SceneOption *row = &TABLE[i];
-        if (row->group & groups) {
-            const Option option = {row->name, row->kind, (char *)input + row->offset, row->value, row->help,
-                                   row->choices, row->range};
-            options_add(options, &option, 1);
+    for (unsigned group = 1; group <= ALL_OF_SCENE; group <<= 1) {
+        for (size_t i = 0; i < COUNT_OF(TABLE); i++) {
+            const SceneOption *row = &TABLE[i];
+            if (row->group & group & groups) {
+                const Option option = {row->name, row->kind, (char *)input + row->offset, row->value, row->help,
+                                       row->choices, row->range};
+                options_add(options, &option, 1);
+            }
+        }
+        for (size_t i = 0; i < COUNT_OF(STRUCTS); i++) {
+            const Field *field = STRUCTS[i].group & group & groups ? STRUCTS[i].fields : NULL;
+            for (; field != NULL && field->option != NULL; field++) {
+                add_field(options, STRUCTS[i].fields, field, (char *)input + STRUCTS[i].offset, STRUCTS[i].note);
+            }
         }
     }
 }

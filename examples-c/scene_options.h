@@ -7,20 +7,20 @@
 #include "options.h"
 #include "scene.h"
 
-/* Groups of options. */
+/* Groups of options, in the order of --help. */
 #define SCENE_PRESET 1u
 #define SCENE_HOLE 2u
 #define SCENE_PLACE 4u    /* where the camera is */
 #define SCENE_CAMERA 8u   /* how it looks and moves */
-#define SCENE_DISK 16u
-#define SCENE_SKY 32u
-#define SCENE_FILM 64u
-#define SCENE_EFFECTS 128u
-#define SCENE_VIEW 256u
-#define SCENE_QUALITY 512u
-#define SCENE_MATTER 1024u /* volumes and hot spots */
-#define SCENE_LENS 2048u   /* the picture's borders as hosts have them */
-#define SCENE_EYES 4096u   /* 360-degree stereo, which windows do not show */
+#define SCENE_LENS 16u    /* the picture's borders as hosts have them */
+#define SCENE_EYES 32u    /* 360-degree stereo, which windows do not show */
+#define SCENE_DISK 64u
+#define SCENE_MATTER 128u /* volumes and hot spots */
+#define SCENE_SKY 256u
+#define SCENE_FILM 512u
+#define SCENE_EFFECTS 1024u
+#define SCENE_VIEW 2048u
+#define SCENE_QUALITY 4096u
 #define ALL_OF_SCENE 8191u
 
 #define MOST_OPTIONS 96u

@@ -4,20 +4,34 @@
 
 #include "../matter.h"
 #include "draw.h"
+#include "field_look.h"
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <imgui.h>
 
 namespace {
 
 constexpr float LABEL_EMS = 6.6F; // the width of the labels' column
 
+// Says what the last widget is for, where the mouse rests on it. NULL: it needs no words.
+void tell(const char *about) {
+    if (about != nullptr && ImGui::IsItemHovered()) {
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
+        ImGui::TextUnformatted(about);
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
+}
+
 // A row's label; the widget goes on beside it with the rest of the line.
-void begin_row(const char *label) {
+void begin_row(const char *label, const char *about) {
     ImGui::PushID(label);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
+    tell(about);
     ImGui::SameLine(LABEL_EMS * ImGui::GetFontSize());
     ImGui::SetNextItemWidth(-1.0F);
 }
@@ -34,6 +48,10 @@ void fact(const char *name, double value, const char *format, bool left) {
     } else {
         ImGui::Text(format, value);
     }
+}
+
+bool every_field(const Field &) {
+    return true;
 }
 
 } // namespace
@@ -81,8 +99,8 @@ template <class Set> void SettingsPanel::try_number(const char *label, double va
 // low and high bound the slider only: with Ctrl and a click any number can be typed, and the library judges it.
 template <class Set>
 void SettingsPanel::number(const char *label, double value, double low, double high, const char *format,
-                           bool logarithmic, Set set) {
-    begin_row(label);
+                           bool logarithmic, Set set, const char *about) {
+    begin_row(label, about);
     const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
     if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format, flags)) {
         try_number(label, value, [&] { return set(value); });
@@ -92,8 +110,9 @@ void SettingsPanel::number(const char *label, double value, double low, double h
 }
 
 template <class Set>
-void SettingsPanel::whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set) {
-    begin_row(label);
+void SettingsPanel::whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set,
+                          const char *about) {
+    begin_row(label, about);
     const ImGuiSliderFlags flags = high > 100 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
     if (ImGui::SliderScalar("##value", ImGuiDataType_U32, &value, &low, &high, "%u", flags)) {
         try_number(label, value, [&] { return set(value); });
@@ -102,9 +121,10 @@ void SettingsPanel::whole(const char *label, uint32_t value, uint32_t low, uint3
     show_message(label);
 }
 
-template <class Set> void SettingsPanel::vector(const char *label, const double value[3], Set set) {
+template <class Set>
+void SettingsPanel::vector(const char *label, const double value[3], Set set, const char *about) {
     double edited[3] = {value[0], value[1], value[2]};
-    begin_row(label);
+    begin_row(label, about);
     if (ImGui::DragScalarN("##value", ImGuiDataType_Double, edited, 3, 0.005F, nullptr, nullptr, "%.3f")) {
         report(section_, label, set(edited).message);
     }
@@ -112,14 +132,21 @@ template <class Set> void SettingsPanel::vector(const char *label, const double 
     show_message(label);
 }
 
-// names[i] stands for the constant first + i.
+// A value that is none of the choices shows nothing.
 template <class Set>
-void SettingsPanel::choice(const char *label, int32_t value, const char *const *names, int32_t count, int32_t first,
-                           Set set) {
-    int index = value - first;
-    begin_row(label);
-    if (ImGui::Combo("##value", &index, names, count)) {
-        report(section_, label, set(first + index).message);
+void SettingsPanel::choice(const char *label, int32_t value, const Choice *choices, Set set, const char *about) {
+    const Choice *chosen = choices;
+    while (chosen->name != nullptr && chosen->value != value) {
+        chosen++;
+    }
+    begin_row(label, about);
+    if (ImGui::BeginCombo("##value", chosen->name != nullptr ? as_label(chosen->name).c_str() : "")) {
+        for (; choices->name != nullptr; choices++) {
+            if (ImGui::Selectable(as_label(choices->name).c_str(), choices->value == value)) {
+                report(section_, label, set(choices->value).message);
+            }
+        }
+        ImGui::EndCombo();
     }
     ImGui::PopID();
     show_message(label);
@@ -129,6 +156,99 @@ template <class Set> void SettingsPanel::flag(const char *label, uint32_t flags,
     if (ImGui::CheckboxFlags(label, &flags, bit)) {
         report(section_, label, set(flags).message);
     }
+}
+
+// A widget for each field of a struct that `shown` is true for. defaults: such a struct as the library begins it.
+template <class Struct, class Set, class Shown>
+void SettingsPanel::fields(const Field *list, Struct &value, const Struct &defaults, Set set, Shown shown) {
+    const auto at = [](const auto &object, const Field &field) {
+        return reinterpret_cast<const char *>(&object) + field.offset;
+    };
+    for (const Field *field = list; field->option != nullptr; field++) {
+        if (shown(*field)) {
+            char *target = reinterpret_cast<char *>(&value) + field->offset;
+            this->field(list, *field, target, at(defaults, *field), set);
+        }
+    }
+}
+
+// Assigns, and asks for the struct that has the new value.
+template <class Set>
+void SettingsPanel::field(const Field *list, const Field &field, char *target, const char *by_default, Set set) {
+    const std::string label = label_of(list, field);
+    const auto        assign = [&](auto value) {
+        *reinterpret_cast<decltype(value) *>(target) = value;
+        return set();
+    };
+    switch (field.kind) {
+    case OPTION_BIT: {
+        const uint32_t flags = *reinterpret_cast<const uint32_t *>(target);
+        // Two in a row; the bits of a struct come first.
+        if ((&field - list) % 2 == 1) {
+            ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
+        }
+        flag(label.c_str(), flags, static_cast<uint32_t>(field.choices->value), assign);
+        tell(field.about);
+        for (const Field *bit = list; (&field)[1].kind != OPTION_BIT && bit <= &field; bit++) {
+            show_message(label_of(list, *bit).c_str()); // below the last of them
+        }
+        break;
+    }
+    case OPTION_BITS:
+        bits(*reinterpret_cast<const uint32_t *>(target), field.choices, assign);
+        break;
+    case OPTION_CHOICE:
+        choice(label.c_str(), *reinterpret_cast<const int32_t *>(target), field.choices, assign, field.about);
+        break;
+    case OPTION_UINT:
+        whole(label.c_str(), *reinterpret_cast<const uint32_t *>(target), static_cast<uint32_t>(field.low),
+              static_cast<uint32_t>(field.high), assign, field.about);
+        break;
+    case OPTION_UINT64:
+        seed(label.c_str(), *reinterpret_cast<const uint64_t *>(target), assign, field.about);
+        break;
+    case OPTION_VECTOR:
+        vector(label.c_str(), reinterpret_cast<const double *>(target), [&](const double edited[3]) {
+            std::copy(edited, edited + 3, reinterpret_cast<double *>(target));
+            return set();
+        }, field.about);
+        break;
+    case OPTION_DOUBLE:
+    case OPTION_DEGREES: {
+        const double    now = *reinterpret_cast<const double *>(target);
+        const FieldLook look = look_of(list, field, *reinterpret_cast<const double *>(by_default), now);
+        number(look.label.c_str(), now / look.unit, look.low, look.high, look.format.c_str(), look.logarithmic,
+               [&](double shown) { return assign(shown * look.unit); }, field.about);
+        break;
+    }
+    default:
+        break; // pairs and fours have no widget
+    }
+}
+
+// A check box for each bit, three in a row.
+template <class Set> void SettingsPanel::bits(uint32_t flags, const Choice *choices, Set set) {
+    for (const Choice *part = choices; part->name != nullptr; part++) {
+        const auto column = (part - choices) % 3;
+        if (column != 0) {
+            ImGui::SameLine(static_cast<float>(column) * LABEL_EMS * ImGui::GetFontSize());
+        }
+        flag(as_label(part->name).c_str(), flags, static_cast<uint32_t>(part->value), set);
+    }
+    for (const Choice *part = choices; part->name != nullptr; part++) {
+        show_message(as_label(part->name).c_str());
+    }
+}
+
+template <class Set>
+void SettingsPanel::seed(const char *label, uint64_t value, Set set, const char *about) {
+    begin_row(label, about);
+    constexpr uint64_t one = 1;
+    if (ImGui::InputScalar("##value", ImGuiDataType_U64, &value, &one)) {
+        report(section_, label, set(value).message);
+    }
+    ImGui::PopID();
+    show_message(label);
 }
 
 void SettingsPanel::hole(Scene &scene, const BhrHoleInfo &numbers) {
@@ -165,8 +285,7 @@ void SettingsPanel::camera(Scene &scene, const BhrHoleInfo &numbers) {
         camera.fov_y = degrees * DEGREE;
         return scene.set_camera(camera);
     });
-    constexpr const char *motions[] = {"static", "free fall", "orbit", "velocity"};
-    choice("motion", camera.motion, motions, 4, BHR_MOTION_STATIC, [&](int32_t motion) {
+    choice("motion", camera.motion, MOTIONS, [&](int32_t motion) {
         camera.motion = motion;
         return scene.set_camera(camera);
     });
@@ -193,99 +312,7 @@ void SettingsPanel::disk(Scene &scene) {
     if (!present) {
         return;
     }
-    ImGui::SameLine(LABEL_EMS * ImGui::GetFontSize());
-    const auto set = [&] { return scene.set_disk(&disk); };
-    const auto set_flags = [&](uint32_t flags) {
-        disk.flags = flags;
-        return set();
-    };
-    flag("retrograde", disk.flags, BHR_DISK_RETROGRADE, set_flags);
-    ImGui::SameLine();
-    flag("plunges", disk.flags, BHR_DISK_PLUNGES, set_flags);
-    const auto field = [&](const char *label, double BhrDisk::*member, double low, double high, const char *format,
-                           bool logarithmic) {
-        number(label, disk.*member, low, high, format, logarithmic, [&](double value) {
-            disk.*member = value;
-            return set();
-        });
-    };
-    const char *begin = (disk.flags & BHR_DISK_PLUNGES) != 0 ? "horizon" : "ISCO";
-    const char *innermost = disk.inner_radius > 0.0 ? "%.2f" : begin;
-    field("inner / M", &BhrDisk::inner_radius, 0.0, 20.0, innermost, false);
-    field("outer / M", &BhrDisk::outer_radius, 2.0, 100.0, "%.2f", true);
-    field("temperature", &BhrDisk::temperature, 500.0, 1e6, "%.0f K", true);
-    field("opacity", &BhrDisk::opacity, 0.0, 1.0, "%.2f", false);
-    field("brightness", &BhrDisk::brightness, 0.01, 100.0, "%.2f", true);
-    field("turbulence", &BhrDisk::turbulence, 0.0, 1.0, "%.2f", false);
-    seed(disk.seed, set);
-}
-
-template <class Set> void SettingsPanel::seed(uint64_t &value, Set set) {
-    begin_row("seed");
-    constexpr uint64_t one = 1;
-    if (ImGui::InputScalar("##value", ImGuiDataType_U64, &value, &one)) {
-        report(section_, "seed", set().message);
-    }
-    ImGui::PopID();
-    show_message("seed");
-}
-
-// A field of a struct of the library: the slider's range, and what it shows.
-template <class Struct> struct NumberField {
-    const char    *label;
-    double Struct::*member;
-    double         low, high;
-    const char    *format;
-    bool           logarithmic;
-    double         unit; // of what is shown
-};
-
-// A new field of BhrVolume is one line here.
-constexpr NumberField<BhrVolume> VOLUME_FIELDS[] = {
-    {"inner / M", &BhrVolume::inner_radius, 0.0, 30.0, "%.2f", false, 1.0},
-    {"outer / M", &BhrVolume::outer_radius, 2.0, 200.0, "%.2f", true, 1.0},
-    {"radius / M", &BhrVolume::radius, 0.5, 50.0, "%.2f", true, 1.0},
-    {"width / M", &BhrVolume::width, 0.1, 20.0, "%.2f", true, 1.0},
-    {"thickness", &BhrVolume::thickness, 0.01, 2.0, "%.3f", true, 1.0},
-    {"opening", &BhrVolume::opening, 1.0, 85.0, "%.1f\xC2\xB0", false, DEGREE},
-    {"slope", &BhrVolume::slope, 0.0, 4.0, "%.2f", false, 1.0},
-    {"absorption", &BhrVolume::absorption, 1e-3, 1e3, "%.4g", true, 1.0},
-    {"temperature", &BhrVolume::temperature, 500.0, 1e6, "%.0f K", true, 1.0},
-    {"its slope", &BhrVolume::temperature_slope, 0.0, 2.0, "%.2f", false, 1.0},
-    {"index", &BhrVolume::spectral_index, -4.0, 4.0, "%.2f", false, 1.0},
-    {"brightness", &BhrVolume::brightness, 0.01, 100.0, "%.2f", true, 1.0},
-    {"sub-Kepler", &BhrVolume::sub_keplerian, 0.0, 1.0, "%.2f", false, 1.0},
-    {"infall", &BhrVolume::infall, 0.0, 1.0, "%.2f", false, 1.0},
-    {"ang. mom.", &BhrVolume::angular_momentum, 0.0, 1.0, "%.2f", false, 1.0},
-    {"speed", &BhrVolume::speed, 0.0, 0.995, "%.3f", false, 1.0},
-    {"turbulence", &BhrVolume::turbulence, 0.0, 1.0, "%.2f", false, 1.0},
-    {"clumping", &BhrVolume::clumping, 0.5, 3.0, "%.2f", false, 1.0},
-    {"heating", &BhrVolume::heating, 0.0, 0.5, "%.2f", false, 1.0},
-};
-
-constexpr NumberField<BhrHotSpot> HOT_SPOT_FIELDS[] = {
-    {"radius / M", &BhrHotSpot::radius, 2.0, 50.0, "%.2f", true, 1.0},
-    {"size / M", &BhrHotSpot::size, 0.05, 5.0, "%.2f", true, 1.0},
-    {"azimuth", &BhrHotSpot::azimuth, -180.0, 180.0, "%.1f\xC2\xB0", false, DEGREE},
-    {"absorption", &BhrHotSpot::absorption, 0.0, 100.0, "%.3g", true, 1.0},
-    {"temperature", &BhrHotSpot::temperature, 500.0, 1e6, "%.0f K", true, 1.0},
-    {"index", &BhrHotSpot::spectral_index, -4.0, 4.0, "%.2f", false, 1.0},
-    {"brightness", &BhrHotSpot::brightness, 0.01, 100.0, "%.2f", true, 1.0},
-};
-
-template <class Struct, size_t Count, class Set>
-void SettingsPanel::fields(const NumberField<Struct> (&list)[Count], Struct &value, Set set) {
-    for (const NumberField<Struct> &field : list) {
-        number(field.label, value.*field.member / field.unit, field.low, field.high, field.format, field.logarithmic,
-               [&](double shown) {
-                   value.*field.member = shown * field.unit;
-                   return set();
-               });
-    }
-    vector("tint", value.tint, [&](const double tint[3]) {
-        std::copy(tint, tint + 3, value.tint);
-        return set();
-    });
+    fields(DISK_FIELDS, disk, with_defaults(bhr_disk_init), [&] { return scene.set_disk(&disk); }, every_field);
 }
 
 void SettingsPanel::volume(Scene &scene, size_t index) {
@@ -297,26 +324,13 @@ void SettingsPanel::volume(Scene &scene, size_t index) {
     std::vector<BhrVolume> volumes = scene.volumes();
     BhrVolume             &volume = volumes[index];
     const auto             set = [&] { return scene.set_volumes(volumes); };
-    const auto             set_flags = [&](uint32_t flags) {
-        volume.flags = flags;
-        return set();
-    };
-    constexpr const char *shapes[] = {"disk", "torus", "halo", "jet"};
     // Each shape begins with values that suit it.
-    choice("shape", volume.shape, shapes, 4, BHR_VOLUME_DISK, [&](int32_t shape) {
+    choice("shape", volume.shape, VOLUME_KINDS, [&](int32_t shape) {
         const Result begun = result_of(volume_begin(&volume, shape));
         return begun.ok() ? set() : begun;
     });
-    constexpr const char *flows[] = {"Keplerian", "angular momentum", "outflow"};
-    choice("flow", volume.flow, flows, 3, BHR_FLOW_KEPLERIAN, [&](int32_t flow) {
-        volume.flow = flow;
-        return set();
-    });
-    flag("retrograde", volume.flags, BHR_VOLUME_RETROGRADE, set_flags);
-    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-    flag("power law", volume.flags, BHR_VOLUME_POWER_LAW, set_flags);
-    fields(VOLUME_FIELDS, volume, set);
-    seed(volume.seed, set);
+    fields(VOLUME_FIELDS, volume, with_defaults(bhr_volume_init), set,
+           [](const Field &field) { return field.choices != VOLUME_KINDS; });
     ImGui::PopID();
 }
 
@@ -329,15 +343,8 @@ void SettingsPanel::hot_spot(Scene &scene, size_t index) {
     ImGui::PushID(names[index]);
     std::vector<BhrHotSpot> spots = scene.hot_spots();
     BhrHotSpot             &spot = spots[index];
-    const auto              set = [&] { return scene.set_hot_spots(spots); };
-    const auto              set_flags = [&](uint32_t flags) {
-        spot.flags = flags;
-        return set();
-    };
-    flag("retrograde", spot.flags, BHR_HOT_SPOT_RETROGRADE, set_flags);
-    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-    flag("thermal", spot.flags, BHR_HOT_SPOT_THERMAL, set_flags);
-    fields(HOT_SPOT_FIELDS, spot, set);
+    fields(HOT_SPOT_FIELDS, spot, with_defaults(bhr_hot_spot_init), [&] { return scene.set_hot_spots(spots); },
+           every_field);
     ImGui::PopID();
 }
 
@@ -367,38 +374,8 @@ void SettingsPanel::sky(Scene &scene) {
     if (!section("Sky", true)) {
         return;
     }
-    BhrSky     sky = scene.sky();
-    const auto set_flags = [&](uint32_t flags) {
-        sky.flags = flags;
-        return scene.set_sky(sky);
-    };
-    const struct {
-        const char *name;
-        uint32_t    bit;
-    } parts[] = {{"stars", BHR_SKY_STARS},
-                 {"milky way", BHR_SKY_MILKY_WAY},
-                 {"grid", BHR_SKY_GRID},
-                 {"random", BHR_SKY_PROCEDURAL},
-                 {"map", BHR_SKY_MAP}};
-    int column = 0;
-    for (const auto &part : parts) {
-        if (column % 3 != 0) {
-            ImGui::SameLine(static_cast<float>(column % 3) * LABEL_EMS * ImGui::GetFontSize());
-        }
-        flag(part.name, sky.flags, part.bit, set_flags);
-        column++;
-    }
-    for (const auto &part : parts) {
-        show_message(part.name);
-    }
-    number("starlight", sky.stars_brightness, 0.01, 100.0, "%.2f", true, [&](double brightness) {
-        sky.stars_brightness = brightness;
-        return scene.set_sky(sky);
-    });
-    number("map's light", sky.map_brightness, 0.01, 100.0, "%.2f", true, [&](double brightness) {
-        sky.map_brightness = brightness;
-        return scene.set_sky(sky);
-    });
+    BhrSky sky = scene.sky();
+    fields(SKY_FIELDS, sky, with_defaults(bhr_sky_init), [&] { return scene.set_sky(sky); }, every_field);
     // The part of the orientation that a slider can show: a turn about the scene's z.
     const double turn = 2.0 * std::atan2(sky.orientation[2], sky.orientation[3]) / DEGREE;
     number("turned by", turn, -180.0, 180.0, "%.1f\xC2\xB0", false, [&](double degrees) {
@@ -412,74 +389,31 @@ void SettingsPanel::film(Scene &scene) {
     if (!section("Film", true)) {
         return;
     }
-    constexpr const char *presets[] = {"cinematic", "physical", "observatory", "teaching"};
     // None of them is in force once something else was changed: so none is shown as chosen.
-    choice("preset", -1, presets, 4, BHR_PRESET_CINEMATIC, [&](int32_t preset) { return scene.set_preset(preset); });
+    choice("preset", NO_PRESET, PRESETS, [&](int32_t preset) { return scene.set_preset(preset); });
     // The name of AUTO says which it has chosen.
-    const bool  deep = scene.chosen_matter() == BHR_PRESET_MATTER_DEEP;
-    const char *matters[] = {deep ? "auto: deep" : "auto: thin", "thin", "deep"};
-    choice("its matter", scene.preset_matter(), matters, 3, BHR_PRESET_MATTER_AUTO,
+    const bool deep = scene.chosen_matter() == BHR_PRESET_MATTER_DEEP;
+    const Choice matters[] = {{deep ? "auto: deep" : "auto: thin", BHR_PRESET_MATTER_AUTO},
+                              {"thin", BHR_PRESET_MATTER_THIN},
+                              {"deep", BHR_PRESET_MATTER_DEEP},
+                              {nullptr, 0}};
+    choice("its matter", scene.preset_matter(), matters,
            [&](int32_t matter) { return scene.set_preset_matter(matter); });
-    BhrFilm               film = scene.film();
-    constexpr const char *tone_maps[] = {"none", "ACES", "AgX"};
-    choice("tone map", film.tone_map, tone_maps, 3, BHR_TONE_MAP_NONE, [&](int32_t tone_map) {
-        film.tone_map = tone_map;
-        return scene.set_film(film);
-    });
-    number("exposure", film.exposure_ev, -10.0, 10.0, "%+.2f EV", false, [&](double exposure) {
-        film.exposure_ev = exposure;
-        return scene.set_film(film);
-    });
-    number("bloom", film.bloom, 0.0, 1.0, "%.2f", false, [&](double bloom) {
-        film.bloom = bloom;
-        return scene.set_film(film);
-    });
-    number("beam", film.beam_fwhm, 0.0, 1.0, "%.3f", false, [&](double fwhm) {
-        film.beam_fwhm = fwhm;
-        return scene.set_film(film);
-    });
-    constexpr const char *colour_maps[] = {"none", "afmhot"};
-    choice("colour map", film.colour_map, colour_maps, 2, BHR_COLOUR_MAP_NONE, [&](int32_t colour_map) {
-        film.colour_map = colour_map;
-        return scene.set_film(film);
-    });
+    BhrFilm film = scene.film();
+    fields(FILM_FIELDS, film, with_defaults(bhr_film_init), [&] { return scene.set_film(film); }, every_field);
 }
 
 void SettingsPanel::quality(Scene &scene, FrameSettings &frames) {
     if (!section("Quality", true)) {
         return;
     }
-    BhrQuality            quality = scene.quality();
-    const auto            set = [&] { return scene.set_quality(quality); };
-    constexpr const char *methods[] = {"auto (tables)", "RK4", "adaptive"};
-    choice("method", quality.method, methods, 3, BHR_METHOD_AUTO, [&](int32_t method) {
-        quality.method = method;
-        return set();
-    });
-    whole("samples", quality.samples_per_pixel, 1, 64, [&](uint32_t samples) {
-        quality.samples_per_pixel = samples;
-        return set();
-    });
-    whole("steps, max", quality.max_steps, 16, 100000, [&](uint32_t steps) {
-        quality.max_steps = steps;
-        return set();
-    });
-    if (quality.method == BHR_METHOD_ADAPTIVE) {
-        number("tolerance", quality.tolerance, 1e-14, 1e-3, quality.tolerance > 0.0 ? "%.1e" : "default", true,
-               [&](double tolerance) {
-                   quality.tolerance = tolerance;
-                   return set();
-               });
-    } else {
-        number("step", quality.step, 1e-3, 0.5, quality.step > 0.0 ? "%.3f" : "default", true, [&](double step) {
-            quality.step = step;
-            return set();
-        });
-    }
-    whole("disk images", quality.max_disk_order, 0, 15, [&](uint32_t order) {
-        quality.max_disk_order = order;
-        return set();
-    });
+    BhrQuality quality = scene.quality();
+    // Two fields say how far a step goes; each method reads one of them. The picture has a scale of its own.
+    const char *unread = quality.method == BHR_METHOD_ADAPTIVE ? "--step" : "--tolerance";
+    fields(QUALITY_FIELDS, quality, with_defaults(bhr_quality_init), [&] { return scene.set_quality(quality); },
+           [&](const Field &field) {
+               return std::strcmp(field.option, unread) != 0 && std::strcmp(field.option, "--render-scale") != 0;
+           });
     number("resolution", frames.scale, 0.1, 1.0, "%.2f", false, [&](double scale) {
         frames.scale = std::clamp(scale, 0.1, 1.0);
         return Result{};
@@ -497,9 +431,7 @@ void SettingsPanel::view(Scene &scene) {
     if (!section("View and effects", true)) {
         return;
     }
-    constexpr const char *views[] = {"light", "redshift", "order", "deflection", "steps", "metric -g_tt",
-                                     "optical depth", "intensity"};
-    choice("view", scene.view(), views, 8, BHR_VIEW_LIGHT, [&](int32_t view) { return scene.set_view(view); });
+    choice("view", scene.view(), VIEWS, [&](int32_t view) { return scene.set_view(view); });
     const auto set = [&](uint32_t effects) { return scene.set_effects(effects); };
     flag("Doppler shift", scene.effects(), BHR_EFFECT_DOPPLER_SHIFT, set);
     ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);

@@ -4,6 +4,7 @@
 #ifndef PANEL_SETTINGS_H
 #define PANEL_SETTINGS_H
 
+#include "../fields.h"
 #include "frames.h"
 #include "scene.h"
 
@@ -23,8 +24,6 @@ struct Clock {
     double speed = 8.0;        // of the scene, in M per second
     bool   moves_camera = false; // along its world line, when it falls or orbits
 };
-
-template <class Struct> struct NumberField;
 
 class SettingsPanel {
 public:
@@ -52,14 +51,19 @@ private:
     bool section(const char *name, bool open);
     template <class Set>
     void number(const char *label, double value, double low, double high, const char *format, bool logarithmic,
-                Set set);
-    template <class Set> void whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set);
-    template <class Set> void vector(const char *label, const double value[3], Set set);
+                Set set, const char *about = nullptr);
     template <class Set>
-    void choice(const char *label, int32_t value, const char *const *names, int32_t count, int32_t first, Set set);
-    template <class Struct, size_t Count, class Set>
-    void fields(const NumberField<Struct> (&list)[Count], Struct &value, Set set);
-    template <class Set> void seed(uint64_t &value, Set set);
+    void whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set, const char *about = nullptr);
+    template <class Set>
+    void vector(const char *label, const double value[3], Set set, const char *about = nullptr);
+    template <class Set>
+    void choice(const char *label, int32_t value, const Choice *choices, Set set, const char *about = nullptr);
+    template <class Set> void bits(uint32_t flags, const Choice *choices, Set set);
+    template <class Set> void seed(const char *label, uint64_t value, Set set, const char *about);
+    template <class Struct, class Set, class Shown>
+    void fields(const Field *list, Struct &value, const Struct &defaults, Set set, Shown shown);
+    template <class Set>
+    void field(const Field *list, const Field &field, char *target, const char *by_default, Set set);
     template <class Set> void flag(const char *label, uint32_t flags, uint32_t bit, Set set);
     template <class Set> void try_number(const char *label, double value, Set set);
     void                      show_message(const char *label);

@@ -140,7 +140,7 @@ enum class VolumeShape : std::int32_t {
 enum class Flow : std::int32_t {
     /// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there.
     keplerian = BHR_FLOW_KEPLERIAN,
-    /// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al.
+    /// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020.
     angular_momentum = BHR_FLOW_ANGULAR_MOMENTUM,
     /// Away from the hole, the faster the farther, as the matter of a jet: at rest at r = inner_radius, at speed far
     /// away, falling in nearer to the hole.
@@ -153,9 +153,9 @@ enum class Format : std::int32_t {
     rgba8_srgb = BHR_FORMAT_RGBA8_SRGB,
     /// 4 bytes: blue, green, red with the sRGB curve, alpha.
     bgra8_srgb = BHR_FORMAT_BGRA8_SRGB,
-    /// 4 half floats: linear radiance, Rec.
+    /// 4 half floats: linear radiance, Rec. 709 primaries; alpha.
     rgba16f = BHR_FORMAT_RGBA16F,
-    /// 4 floats: linear radiance, Rec.
+    /// 4 floats: linear radiance, Rec. 709 primaries; alpha.
     rgba32f = BHR_FORMAT_RGBA32F,
     /// 1 float: the value of a view or an output, or the distance of an occluder.
     r32f = BHR_FORMAT_R32F,

@@ -120,7 +120,7 @@ struct Volume {
     double temperature_slope;
     /// POWER_LAW: -4 .. 4.
     double spectral_index;
-    /// POWER_LAW: the colour of its light at every shift, linear Rec.
+    /// POWER_LAW: the colour of its light at every shift, linear Rec. 709, each 0 .. 1.
     Vector tint;
     /// A factor on the light, 0 .. 1e6, which changes neither its colour nor what is absorbed.
     double brightness;
@@ -165,7 +165,7 @@ struct HotSpot {
     double temperature;
     /// Without THERMAL: -4 .. 4.
     double spectral_index;
-    /// Without THERMAL: the colour of its light at every shift, linear Rec.
+    /// Without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1.
     Vector tint;
     /// 0 .. 1e6, as BhrVolume.brightness.
     double brightness;

@@ -173,6 +173,35 @@ def test_defaults_are_the_librarys(struct):
     assert made.struct_size == c.struct_size and struct.from_c(made) == struct()
 
 
+#: The order of fields, which hosts may count on: a new one goes behind these.
+POSITIONS = {
+    bhr.Camera: (
+        "position forward up fov_y projection motion velocity tan_left tan_right tan_down tan_up jitter "
+        "eye_distance eye"
+    ),
+    bhr.Disk: (
+        "inner_radius outer_radius temperature opacity brightness turbulence seed flags reference emission_law "
+        "edge_softness"
+    ),
+    bhr.Film: "tone_map exposure_ev bloom beam_fwhm colour_map",
+    bhr.HotSpot: "radius size azimuth flags absorption temperature spectral_index tint brightness",
+    bhr.Quality: "method samples_per_pixel max_steps step tolerance max_disk_order render_scale volume_resolution",
+    bhr.Region: "full_width full_height x y",
+    bhr.Sky: "flags stars_brightness map_brightness orientation seed",
+    bhr.Volume: (
+        "shape flow flags inner_radius outer_radius radius width thickness opening slope absorption temperature "
+        "temperature_slope spectral_index tint brightness sub_keplerian infall angular_momentum speed turbulence "
+        "clumping heating seed"
+    ),
+}
+
+
+@pytest.mark.parametrize("struct", POSITIONS, ids=lambda struct: struct.__name__)
+def test_fields_keep_their_positions(struct):
+    known = POSITIONS[struct].split()
+    assert [field.name for field in dataclasses.fields(struct)][: len(known)] == known
+
+
 RAYS = [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing"), (bhr.TRANSFER, "BhrTransfer")]
 RAYS += [(bhr.PROJECTED, "BhrProjectedPoint")]
 

@@ -22,6 +22,7 @@ const ONLY_TOLD: [&str; 2] = ["Status", "Fate"];
 const STRUCTS: [&str; 8] =
     ["BhrCamera", "BhrDisk", "BhrVolume", "BhrHotSpot", "BhrSky", "BhrFilm", "BhrPresetOptions", "BhrQuality"];
 
+/// The words of files that are made here.
 const MADE: &str = "Made by tests/header/bindings.rs from include/bhr.json; do not edit.";
 
 /// A constant as bindings have it.
@@ -32,18 +33,20 @@ pub struct Member {
     pub name: String,
     pub value: i64,
     /// The first sentence of its comment.
-    about: String,
+    pub about: String,
 }
 
 /// The first sentence of a comment, without the place of bits that it begins with.
-fn sentence(documentation: &str) -> String {
+pub fn sentence(documentation: &str) -> String {
     // A number alone is a list's item to Doxygen.
     if documentation.trim() == "0." {
         return "Reserved: 0.".into();
     }
     let plain = documentation.split_once(".flags: ").map_or(documentation, |(_, rest)| rest);
-    // Two dots are those of a range.
-    let mut ends = plain.match_indices(". ").filter(|(at, _)| !plain[..*at].ends_with('.'));
+    // Two dots are those of a range; "Rec. 709" and "et al. 2020" go on.
+    let goes_on = |before: &str| [".", "Rec", "et al"].iter().any(|end| before.ends_with(end));
+    let is_end = |(at, _): &(usize, &str)| !goes_on(&plain[..*at]);
+    let mut ends = plain.match_indices(". ").filter(is_end);
     let end = ends.next().map_or(plain.len(), |(at, _)| at + 1);
     let sentence = plain[..end].split('\n').next().unwrap().trim();
     let mut letters = sentence.chars();
@@ -88,7 +91,7 @@ pub fn bits(json: &Value, place: &str) -> Vec<Member> {
 }
 
 /// The places of bits, in the order of the header, with the names of their types.
-fn places(json: &Value) -> Vec<(String, String)> {
+pub fn places(json: &Value) -> Vec<(String, String)> {
     let mut places: Vec<(String, String)> = Vec::new();
     for constant in entries(json, "constants") {
         let Some(place) = constant["bits_of"].as_str() else { continue };
@@ -108,7 +111,7 @@ fn places(json: &Value) -> Vec<(String, String)> {
 }
 
 /// Text in lines of at most 120 columns, each after `begin`.
-fn wrapped(begin: &str, words: &str) -> String {
+pub fn wrapped(begin: &str, words: &str) -> String {
     let mut lines = vec![begin.to_owned()];
     for word in words.split_whitespace() {
         let last = lines.last_mut().unwrap();
@@ -207,7 +210,7 @@ fn cpp_type(json: &Value, object: &str, field: &Value) -> String {
     }
 }
 
-fn structs_hpp(json: &Value) -> String {
+pub fn structs_hpp(json: &Value) -> String {
     let mut code = cpp_opening(
         "structs",
         "the structs that programs fill in, with the defaults of bhr.h.",
@@ -294,23 +297,24 @@ fn constants_py(json: &Value) -> String {
     code + "}\n"
 }
 
-/// With BHR_UPDATE_HEADER set, this brings the bindings' files up to date, with the header (tests/header/generated.rs).
+/// With BHR_UPDATE_HEADER set, this brings a file that is made from include/bhr.json up to date, with the header
+/// (tests/header/generated.rs).
+pub fn is_up_to_date(path: &str, generated: &str) {
+    let file = root().join(path);
+    if std::env::var_os("BHR_UPDATE_HEADER").is_some() {
+        std::fs::write(&file, generated).unwrap();
+    }
+    assert!(
+        std::fs::read_to_string(&file).unwrap_or_default() == generated,
+        "{path} is not what include/bhr.json says; bring it up to date with\n\
+         BHR_UPDATE_HEADER=1 cargo test --profile checked --locked --test header committed, twice"
+    );
+}
+
 #[test]
 fn the_committed_bindings_are_the_generated_ones() {
     let json = committed();
-    for (path, generated) in [
-        ("include/bhr/constants.hpp", constants_hpp(&json)),
-        ("include/bhr/structs.hpp", structs_hpp(&json)),
-        ("python/src/bhr/_constants.py", constants_py(&json)),
-    ] {
-        let file = root().join(path);
-        if std::env::var_os("BHR_UPDATE_HEADER").is_some() {
-            std::fs::write(&file, &generated).unwrap();
-        }
-        assert!(
-            std::fs::read_to_string(&file).unwrap_or_default() == generated,
-            "{path} is not what include/bhr.json says; bring it up to date with\n\
-             BHR_UPDATE_HEADER=1 cargo test --profile checked --locked --test header committed, twice"
-        );
-    }
+    is_up_to_date("include/bhr/constants.hpp", &constants_hpp(&json));
+    is_up_to_date("include/bhr/structs.hpp", &structs_hpp(&json));
+    is_up_to_date("python/src/bhr/_constants.py", &constants_py(&json));
 }

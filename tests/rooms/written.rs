@@ -13,7 +13,7 @@ const AS_THEY_ARE: [&str; 5] = ["tests/abi", "tests/contract.h", "tests/golden",
 fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
     let name = path.file_name()?.to_str()?;
     match name.rsplit_once('.').map_or(name, |(_, extension)| extension) {
-        "rs" | "wgsl" | "c" | "cpp" | "h" | "hpp" | "js" | "go" => Some(&["///", "//!", "//", "/*", "* "]),
+        "rs" | "wgsl" | "c" | "cpp" | "h" | "hpp" | "js" | "ts" | "go" => Some(&["///", "//!", "//", "/*", "* "]),
         "lua" => Some(&["--"]),
         "py" | "pyi" => Some(&["\"\"\"", "#"]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
@@ -46,6 +46,7 @@ pub fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
         "shaders",
         "src",
         "tests",
+        "web",
     ] {
         files(&root().join(folder), &mut found);
     }

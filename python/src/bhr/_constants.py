@@ -140,7 +140,7 @@ class Flow(enum.IntEnum):
 
     #: On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there.
     KEPLERIAN = 0
-    #: -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al.
+    #: -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020.
     ANGULAR_MOMENTUM = 1
     #: Away from the hole, the faster the farther, as the matter of a jet: at rest at r = inner_radius, at speed far
     #: away, falling in nearer to the hole.
@@ -154,9 +154,9 @@ class Format(enum.IntEnum):
     RGBA8_SRGB = 1
     #: 4 bytes: blue, green, red with the sRGB curve, alpha.
     BGRA8_SRGB = 2
-    #: 4 half floats: linear radiance, Rec.
+    #: 4 half floats: linear radiance, Rec. 709 primaries; alpha.
     RGBA16F = 3
-    #: 4 floats: linear radiance, Rec.
+    #: 4 floats: linear radiance, Rec. 709 primaries; alpha.
     RGBA32F = 4
     #: 1 float: the value of a view or an output, or the distance of an occluder.
     R32F = 5

@@ -42,6 +42,7 @@ from ._job import Job, Waiter
 from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
 from ._names import flags, member
 from ._scene_text import SceneText
+from ._struct import Vector, VectorLike, doubles, new
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -53,11 +54,7 @@ from ._structs import (
     Quality,
     Region,
     Sky,
-    Vector,
-    VectorLike,
     Volume,
-    doubles,
-    new,
 )
 from ._tracing import Tracing
 

@@ -15,7 +15,7 @@ from ._constants import Format, FormatLike
 from ._ffi import ffi
 from ._library import check, lib
 from ._names import member
-from ._structs import new
+from ._struct import new
 
 _DTYPES: dict[Format, type[np.generic]] = {
     Format.RGBA8_SRGB: np.uint8,

@@ -16,7 +16,8 @@ from ._constants import Status
 from ._ffi import ffi
 from ._frame import Frame
 from ._library import Call, Progress, failure, forked, lib
-from ._structs import FrameStats, new
+from ._struct import new
+from ._structs import FrameStats
 
 if TYPE_CHECKING:
     from ._context import Context

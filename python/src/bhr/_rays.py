@@ -12,32 +12,32 @@ import numpy.typing as npt
 from ._ffi import ffi
 
 
-def _dtype(kind: Any) -> np.dtype[Any]:
+def dtype_of(kind: Any) -> np.dtype[Any]:
     """numpy's type for a C type."""
     if kind.kind == "array":
-        return np.dtype((_dtype(kind.item), (kind.length,)))
+        return np.dtype((dtype_of(kind.item), (kind.length,)))
     if kind.kind == "struct":
-        fields = [(name, _dtype(field.type), field.offset) for name, field in kind.fields]
+        fields = [(name, dtype_of(field.type), field.offset) for name, field in kind.fields]
         names, formats, offsets = zip(*fields)
         return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(kind)})
     return np.dtype({"double": np.float64, "int32_t": np.int32, "uint32_t": np.uint32}[kind.cname])
 
 
 #: A ray: `position`, `direction` (the way that the observer looks) and `frequency_ratio` (1 for an observer at rest).
-RAY: np.dtype[Any] = _dtype(ffi.typeof("BhrRay"))
+RAY: np.dtype[Any] = dtype_of(ffi.typeof("BhrRay"))
 
 #: A crossing of the equatorial plane: `radius`, `azimuth`, `redshift`, `delay`.
-CROSSING: np.dtype[Any] = _dtype(ffi.typeof("BhrCrossing"))
+CROSSING: np.dtype[Any] = dtype_of(ffi.typeof("BhrCrossing"))
 
 #: The end of a ray: `fate` (a Fate), `sky_direction`, `sky_redshift`, `swept_angle`, `steps`, and its crossings of the
 #: equatorial plane, of which `crossing_count` are there.
-HIT: np.dtype[Any] = _dtype(ffi.typeof("BhrHit"))
+HIT: np.dtype[Any] = dtype_of(ffi.typeof("BhrHit"))
 
 #: The matter with depth along a ray: `fate`, `intensity`, `optical_depth` (NaN unless escaped) and `light`.
-TRANSFER: np.dtype[Any] = _dtype(ffi.typeof("BhrTransfer"))
+TRANSFER: np.dtype[Any] = dtype_of(ffi.typeof("BhrTransfer"))
 
 #: The image of a point: the fields of ProjectedPoint.
-PROJECTED: np.dtype[Any] = _dtype(ffi.typeof("BhrProjectedPoint"))
+PROJECTED: np.dtype[Any] = dtype_of(ffi.typeof("BhrProjectedPoint"))
 
 
 def rays(

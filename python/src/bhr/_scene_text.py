@@ -22,7 +22,7 @@ class Pictures(NamedTuple):
     width: int
     height: int
     #: 1 for a scene that does not move.
-    count: int
+    count: int  # type: ignore[assignment] # tuple's method of this name is not needed
     #: Pictures a second.
     rate: float
 
@@ -82,7 +82,8 @@ class SceneText:
                 # Another thread may have set a scene in between whose text is longer: again.
                 if status != Status.INVALID_ARGUMENT:
                     check(status)
-                    return ffi.string(text).decode()
+                    saved: str = ffi.string(text).decode()
+                    return saved
 
     def set_sky_map(self, picture: str | os.PathLike[str] | Frame | npt.NDArray[Any] | None) -> None:
         """Gives SkyFlags.MAP its all-round picture, which is copied, or read from a file as `load` does; None removes

@@ -12,7 +12,8 @@ from ._ffi import ffi
 from ._gate import Gate
 from ._library import check, lib
 from ._rays import HIT, PROJECTED, RAY, TRANSFER
-from ._structs import ProjectedPoint, VectorLike, doubles, new
+from ._struct import VectorLike, doubles, new
+from ._structs import ProjectedPoint
 
 
 class Tracing:

@@ -36,7 +36,7 @@ from ._gate import Door
 from ._job import AnyJob
 from ._library import begin, check, lib
 from ._names import Named, flags, member, named
-from ._structs import _Struct, new
+from ._struct import Struct, new
 
 __all__ = [
     "HandleType",
@@ -145,7 +145,7 @@ def find_adapter(uuid: bytes | None = None, luid: bytes | None = None) -> int:
 
 
 @dataclasses.dataclass(frozen=True)
-class TargetInfo(_Struct):
+class TargetInfo(Struct):
     """The numbers with which the other side imports a target, or bhr the other side's memory."""
 
     c_name: ClassVar[str] = "BhrTargetInfo"
