@@ -80,13 +80,20 @@ impl Names {
         Ok(Self { before: name[..begin].into(), digits: end + 1 - begin, after: name[end + 1..].into(), folder })
     }
 
-    /// The name of one file for all frames. Errors: it has a #.
+    /// The name of one video for all frames. Errors: it has a #, no stem, or the one of unfinished videos.
     pub fn of_one(path: &Path) -> Result<Self, Ending> {
         let names = Self::new(path, false)?;
-        match names.digits {
-            0 => Ok(names),
-            _ => Err(Ending::usage(format!("--out {}: a video has all frames, and no place for a #", path.display()))),
-        }
+        let stem = names.before.rsplit_once('.').map_or("", |(stem, _)| stem);
+        let wrong = if names.digits > 0 {
+            "a video has all frames, and no place for a #"
+        } else if stem.trim_start_matches('.').is_empty() {
+            "it has nothing before its ending"
+        } else if stem.ends_with(".part") {
+            "such names are for videos that are not finished"
+        } else {
+            return Ok(names);
+        };
+        Err(Ending::usage(format!("--out {}: {wrong}", path.display())))
     }
 
     pub fn of(&self, frame: u32) -> PathBuf {

@@ -25,8 +25,8 @@ use std::process::ExitCode;
 
 const AFTER: &str = "\
 Exit statuses: 0 done; 64 a wrong argument; 65 a scene with a mistake; 70 a bug in bhr; 74 a file that cannot be read
-or written; 75 try again (no adapter, no memory, a device that was lost more than three times); 130 and 143 after
-SIGINT and SIGTERM. docs/farms.md has more.";
+or written, or ffmpeg that fails; 75 try again (no adapter, no memory, a device that was lost more than three times);
+130 and 143 after SIGINT and SIGTERM. docs/farms.md has more.";
 
 fn scene() -> Arg {
     Arg::new("scene").required(true).value_name("SCENE").value_parser(value_parser!(PathBuf)).help("A scene file")
@@ -39,7 +39,7 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn device() -> [Arg; 2] {
     [
         option("backend", "NAME", "auto, cpu, vulkan, metal, d3d12 or gl").default_value("auto"),
-        option("adapter", "N", "The adapter of this number in `bhr adapters`; render: also 0,1 or all GPUs"),
+        option("adapter", "N", "Its number in `bhr adapters`; for pictures also several, 0,1, or all (GPUs)"),
     ]
 }
 
@@ -75,19 +75,26 @@ fn command() -> Command {
         .arg(option("stereo", "PLACES", "Both eyes of a panorama: top-bottom or side-by-side"))
         .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265, av1, prores (.mov) or prores4444"))
         .arg(
-            option("quality", "N", "Of a video: 0 best .. 51, of av1 1 .. 63; default 14, of h265 16, of av1 20")
-                .value_parser(value_parser!(u32)),
+            option(
+                "quality",
+                "N",
+                "Of a video: 1 (best) to 51, default 14 (h265: 16); av1: to 63, default 20; not for ProRes",
+            )
+            .value_parser(value_parser!(u32)),
         )
         .arg(
-            option("keyframes", "N", "Of a video: frames that are encoded at a time; default two seconds, 16 at least")
-                .value_parser(value_parser!(u32).range(16..=100_000)),
+            option("keyframes", "N", "Of a video: frames of a piece, which is encoded by itself; default two seconds")
+                .value_parser(value_parser!(u32).range(16..=10_000)),
         )
         .arg(
-            option("ffmpeg", "FILE", "The program that encodes videos")
-                .default_value("ffmpeg")
+            option("ffmpeg", "FILE", "The program that encodes videos; default ffmpeg")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(option("again", "", "Renders frames that are there as well").num_args(0).action(ArgAction::SetTrue))
+        .arg(
+            option("again", "", "Renders also the frames that are there already")
+                .num_args(0)
+                .action(ArgAction::SetTrue),
+        )
         .arg(
             option("continue", "", "Goes on with what is there, as without it; the opposite of --again")
                 .num_args(0)

@@ -165,6 +165,11 @@ impl Manifest {
             }
     }
 
+    /// Whether some line speaks of a file.
+    pub fn knows(&self, file: &Path) -> bool {
+        self.lines.contains_key(&name_of(file))
+    }
+
     /// How much of a video is there, of one that is like `of` in all.
     pub fn part_of(&self, file: &Path, of: &Fingerprint) -> Option<Part> {
         let line = self.lines.get(&name_of(file)).filter(|line| line["video"] == of.scene.as_str())?;

@@ -22,6 +22,15 @@ pub enum Stereo {
     SideBySide,
 }
 
+impl Stereo {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TopBottom => "TOP_BOTTOM",
+            Self::SideBySide => "SIDE_BY_SIDE",
+        }
+    }
+}
+
 pub struct Order {
     pub opened: Opened,
     /// Frames a second.
@@ -267,6 +276,7 @@ impl Order {
             });
             rendered.map_err(asked)?;
         } else {
+            let of_scene = renderer.scene.camera.eye;
             for (eye, layout, begin) in self.eyes()? {
                 if let Some(eye) = eye {
                     renderer.scene.camera.eye = eye;
@@ -278,6 +288,8 @@ impl Order {
                 });
                 rendered.map_err(asked)?;
             }
+            // Attributes are those of both eyes.
+            renderer.scene.camera.eye = of_scene;
         }
         let whole = Region { full_width: width, full_height: height, x: 0, y: 0 };
         Ok(renderer.scene.made(&region.unwrap_or(whole)))
@@ -314,22 +326,19 @@ impl Order {
         Ok(rendered?)
     }
 
-    /// Whether frames are panoramas, whose video says so to players, as the first one tells.
-    pub fn is_panorama(&self, first: u32, renderer: &mut Renderer) -> Result<bool, Ending> {
-        self.show(first, renderer)?;
-        Ok(renderer.scene.camera.projection == Projection::Equirect)
-    }
-
-    /// The part of the whole sphere that a frame shows, of one: from its left, top, right and bottom border.
-    pub fn margins(&self) -> [f64; 4] {
-        let [full_width, full_height] = self.size.map(f64::from);
-        match self.tile {
-            None => [0.0; 4],
-            Some(tile) => {
-                let [x, y, width, height] = tile.map(f64::from);
-                [x / full_width, y / full_height, 1.0 - (x + width) / full_width, 1.0 - (y + height) / full_height]
-            }
+    /// The parts of the whole sphere's width and height that are not in frames, from their left, top, right and bottom
+    /// border; `None` where frames are no panoramas, as the first one tells. Errors: the scene's.
+    pub fn panorama(&self, first: u32, renderer: &mut Renderer) -> Result<Option<[f64; 4]>, Ending> {
+        let (region, size) = self.show(first, renderer)?;
+        if renderer.scene.camera.projection != Projection::Equirect {
+            return Ok(None);
         }
+        let [width, height] = size.map(f64::from);
+        Ok(Some(region.map_or([0.0; 4], |region| {
+            let [full_width, full_height, x, y] =
+                [region.full_width, region.full_height, region.x, region.y].map(f64::from);
+            [x / full_width, y / full_height, 1.0 - (x + width) / full_width, 1.0 - (y + height) / full_height]
+        })))
     }
 }
 

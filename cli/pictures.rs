@@ -126,7 +126,7 @@ impl Pictures<'_> {
                 progress.frame(&Done { frame, file, seconds: None });
                 continue;
             }
-            let Some(claim) = Claim::on(&file)? else {
+            let Some(claim) = Claim::on(&file, false)? else {
                 others.push(frame);
                 continue;
             };
@@ -145,6 +145,14 @@ impl Pictures<'_> {
     /// could not be joined.
     fn is_there(&self, frame: u32, file: &Path, manifest: &Manifest) -> bool {
         !self.again && manifest.has(file, &self.order.fingerprint(frame))
+    }
+
+    fn attributes(&self, made: &bhr::scene::Made) -> Vec<(String, Attribute)> {
+        let mut list = parameters(made);
+        if let Some(stereo) = self.order.stereo {
+            list.push(("bhr.stereo".into(), Attribute::Text(stereo.name().into())));
+        }
+        list
     }
 
     fn frame(
@@ -166,7 +174,7 @@ impl Pictures<'_> {
             places,
             transparent: self.order.transparent,
             effort: self.effort,
-            attributes: if developed { Vec::new() } else { parameters(&made) },
+            attributes: if developed { Vec::new() } else { self.attributes(&made) },
             manifest: self.names.manifest(),
             made: Made {
                 file,

@@ -26,27 +26,30 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     };
     let out = given.get_one::<PathBuf>("out").ok_or_else(|| Ending::usage("no --out"))?;
     let names = if order.codec.is_some() { Names::of_one(out)? } else { Names::new(out, list.len() > 1)? };
-    if let Some(folder) = names.of(0).parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|error| Ending::io(folder, error))?;
-    }
     let kind = given.get_one::<String>("progress").map_or("auto", String::as_str);
     let progress = Progress::new(kind, list.len() as u64)?;
     let signals = Signals::listen();
     let mut renderers = open::renderers(given)?;
     let count = renderers.len();
     let first = renderers.first_mut().ok_or_else(|| Ending::usage("no --adapter"))?;
-    if given.get_flag("dry-run") {
-        return dry_run(&order, &list, first, count, &signals);
+    let (again, signals, dry) = (given.get_flag("again"), &signals, given.get_flag("dry-run"));
+    if let Some(folder) = names.of(0).parent().filter(|folder| !dry && !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|error| Ending::io(folder, error))?;
     }
-    let (again, signals) = (given.get_flag("again"), &signals);
+    check_use(given, order.codec.is_some())?;
     let result = match &order.codec {
         Some(_) if count > 1 => Err(Ending::usage("--adapter: a video is made on one")),
         Some(codec) => {
             let ffmpeg = given.get_one::<PathBuf>("ffmpeg").cloned().unwrap_or_else(|| "ffmpeg".into());
             let keyframes = given.get_one::<u32>("keyframes").copied();
             let film = Film { order: &order, codec, names: &names, again, ffmpeg, keyframes, signals };
+            if dry {
+                film.try_encoder(&list, first)?;
+                return dry_run(&order, &list, first, count, signals);
+            }
             film.render(&list, first, &progress)
         }
+        None if dry => return dry_run(&order, &list, first, count, signals),
         None => {
             let encoders = given.get_one::<u32>("encoders").copied().unwrap_or(0) as usize;
             let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
@@ -57,6 +60,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     };
     progress.end();
     result
+}
+
+/// Errors: options of pictures for a video, or the other way round.
+fn check_use(given: &ArgMatches, video: bool) -> Result<(), Ending> {
+    let (names, of) = match video {
+        true => (["encoders", "compression"], "pictures"),
+        false => (["keyframes", "ffmpeg"], "videos, .mp4 or .mov"),
+    };
+    match names.into_iter().find(|name| given.contains_id(name)) {
+        Some(name) => Err(Ending::usage(format!("--{name}: it is for {of}"))),
+        None => Ok(()),
+    }
 }
 
 /// The pixels of frames that are tried.

@@ -68,20 +68,9 @@ impl Video {
         let end = file.metadata()?.len();
         let (mut at, mut header, mut fragments, mut table) = (0, Vec::new(), Vec::new(), None);
         while at < end {
-            file.seek(SeekFrom::Start(at))?;
-            let mut start = [0; 16];
-            file.read_exact(&mut start[..8])?;
-            let mut size = u64::from(number(&start, 0)?);
-            if size == 1 {
-                file.read_exact(&mut start[8..])?;
-                size = (u64::from(number(&start, 8)?) << 32) | u64::from(number(&start, 12)?);
-            }
-            if size < 8 || size > end - at {
-                return Err(broken("a box goes beyond its end"));
-            }
-            let whole = at..at + size;
-            at += size;
-            match (&start[4..8], table.take()) {
+            let (kind, whole) = top(&mut file, at, end)?;
+            at = whole.end;
+            match (&kind, table.take()) {
                 (b"ftyp" | b"moov", None) if fragments.is_empty() => header.extend(read(&mut file, whole)?),
                 (b"moof", None) => table = Some(whole),
                 (b"mdat", Some(table)) => fragments.push([table, whole]),
@@ -127,6 +116,22 @@ impl Video {
     }
 }
 
+/// The kind and the place of the box that begins at a place of a file.
+fn top(file: &mut File, at: u64, end: u64) -> Result<([u8; 4], Range<u64>)> {
+    file.seek(SeekFrom::Start(at))?;
+    let mut start = [0; 16];
+    file.read_exact(&mut start[..8])?;
+    let mut size = u64::from(number(&start, 0)?);
+    if size == 1 {
+        file.read_exact(&mut start[8..])?;
+        size = (u64::from(number(&start, 8)?) << 32) | u64::from(number(&start, 12)?);
+    }
+    if size < 8 || size > end - at {
+        return Err(broken("it is cut off, as on a full disk"));
+    }
+    Ok((number(&start, 4)?.to_be_bytes(), at..at + size))
+}
+
 /// A part of a file that fits into memory.
 fn read(file: &mut File, part: Range<u64>) -> Result<Vec<u8>> {
     let length = part.end - part.start;
@@ -169,24 +174,79 @@ fn place(moof: &mut [u8], before: u64, ticks: u64) -> Result<u64> {
     Ok(frames)
 }
 
-/// Adds boxes to the description of the video's frames. Errors: INVALID_DATA.
-pub fn describe(header: &mut Vec<u8>, description: &[u8]) -> Result<()> {
-    let grows = description.len() as u32;
-    let mut part = 0..header.len();
-    let mut path = Vec::new();
-    for kind in [b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd"] {
-        let found = child(header, part, kind)?;
-        path.push(found.whole.start);
+/// The boxes that lead to a track's tables, from the outside to the inside.
+const TABLES: [&[u8; 4]; 5] = [b"moov", b"trak", b"mdia", b"minf", b"stbl"];
+
+/// The places of boxes that lie in each other, and the content of the last one.
+fn path(bytes: &[u8], kinds: &[&[u8; 4]]) -> Result<(Vec<usize>, Range<usize>)> {
+    let (mut part, mut places) = (0..bytes.len(), Vec::new());
+    for kind in kinds {
+        let found = child(bytes, part, kind)?;
+        places.push(found.whole.start);
         part = found.content;
     }
-    // A version, flags and a count stand before the descriptions, of which a video has one.
-    part.start += 8;
-    let entry = boxes(header, part)?.into_iter().next().ok_or_else(|| broken("it describes no frames"))?;
-    path.push(entry.whole.start);
-    for at in path {
-        let size = number(header, at)?.checked_add(grows).ok_or_else(|| broken("a table is too large"))?;
-        put(header, at, &size.to_be_bytes())?;
+    Ok((places, part))
+}
+
+/// Replaces a part of some bytes by others, which all boxes at `places` hold.
+fn replace(bytes: &mut Vec<u8>, places: &[usize], part: Range<usize>, by: &[u8]) -> Result<()> {
+    for at in places {
+        let size = (number(bytes, *at)? as usize + by.len()).checked_sub(part.len());
+        let size = size.and_then(|size| u32::try_from(size).ok()).ok_or_else(|| broken("a table is too large"))?;
+        put(bytes, *at, &size.to_be_bytes())?;
     }
-    header.splice(entry.whole.end..entry.whole.end, description.iter().copied());
+    bytes.splice(part, by.iter().copied());
+    Ok(())
+}
+
+/// Adds boxes to the description of the video's frames. Errors: INVALID_DATA.
+pub fn describe(header: &mut Vec<u8>, description: &[u8]) -> Result<()> {
+    let (mut places, tables) = path(header, &TABLES)?;
+    let table = child(header, tables, b"stsd")?;
+    // A version, flags and a count stand before the descriptions, of which a video has one.
+    let entries = table.content.start + 8..table.content.end;
+    let entry = boxes(header, entries)?.into_iter().next().ok_or_else(|| broken("it describes no frames"))?;
+    places.extend([table.whole.start, entry.whole.start]);
+    replace(header, &places, entry.whole.end..entry.whole.end, description)
+}
+
+/// Removes the table of which frames others are made from (sdtp). ffmpeg makes one of no frames, and only where some
+/// frame of the piece is of no use to others, so that headers of one film would differ.
+pub fn remove_dependencies(header: &mut Vec<u8>) -> Result<()> {
+    let (places, tables) = path(header, &TABLES)?;
+    match boxes(header, tables)?.into_iter().find(|found| found.kind == *b"sdtp") {
+        Some(found) => replace(header, &places, found.whole, &[]),
+        None => Ok(()),
+    }
+}
+
+/// Checks that an ordinary video is whole and has so many frames: on a full disk ffmpeg may leave a part of one, and
+/// say nothing. Errors: those of the file; INVALID_DATA.
+pub fn check_whole(mut file: File, frames: u64) -> Result<()> {
+    let end = file.metadata()?.len();
+    let (mut at, mut tables, mut data) = (0, None, 0);
+    while at < end {
+        let (kind, whole) = top(&mut file, at, end)?;
+        match &kind {
+            b"moov" => tables = Some(read(&mut file, whole.clone())?),
+            b"mdat" => data += whole.end - whole.start,
+            _ => {}
+        }
+        at = whole.end;
+    }
+    let tables = tables.ok_or_else(|| broken("it has no box moov"))?;
+    let (_, track) = path(&tables, &TABLES)?;
+    // A size of all frames, or 0; their number; the size of each.
+    let sizes = child(&tables, track, b"stsz")?.content.start + 4;
+    let (same, count) = (u64::from(number(&tables, sizes)?), u64::from(number(&tables, sizes + 4)?));
+    let mut bytes = same * count;
+    if same == 0 {
+        for frame in 0..count as usize {
+            bytes += u64::from(number(&tables, sizes + 8 + 4 * frame)?);
+        }
+    }
+    if count != frames || data < bytes {
+        return Err(broken(&format!("it has {count} frames of {frames}, and {data} bytes of {bytes}")));
+    }
     Ok(())
 }

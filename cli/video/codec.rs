@@ -44,7 +44,8 @@ impl Codec {
             }
         };
         let (default, best, worst) = match kind {
-            Kind::H264 => (14, 0, 51),
+            // At 0 x264 makes lossless video, in a profile that few players have.
+            Kind::H264 => (14, 1, 51),
             Kind::H265 => (16, 0, 51),
             Kind::Av1 => (20, 1, 63),
             Kind::ProRes | Kind::ProRes4444 => (0, 0, 0),

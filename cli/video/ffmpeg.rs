@@ -6,17 +6,69 @@ use crate::ending::Ending;
 use std::ffi::{OsStr, OsString};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::thread::JoinHandle;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// Bytes that are kept of all that ffmpeg says: its last words tell why it ended.
 const MOST_WORDS: usize = 4096;
 
+/// How often it is looked whether a process has ended.
+const GLANCE: Duration = Duration::from_millis(5);
+
+/// How long last words are waited for, which a process that ffmpeg has left behind may keep from ending.
+const LAST_WORDS: Duration = Duration::from_secs(1);
+
+/// A process that several threads may end.
+#[derive(Clone)]
+struct Shared(Arc<Mutex<Child>>);
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Child> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kill(&self) {
+        let _ = self.lock().kill();
+    }
+
+    fn wait(&self) -> std::io::Result<ExitStatus> {
+        loop {
+            if let Some(status) = self.lock().try_wait()? {
+                return Ok(status);
+            }
+            std::thread::sleep(GLANCE);
+        }
+    }
+}
+
+/// The processes that are there, for a thread that ends them where they hang.
+#[derive(Clone, Default)]
+pub struct Running(Arc<Mutex<Vec<Shared>>>);
+
+impl Running {
+    fn lock(&self) -> MutexGuard<'_, Vec<Shared>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn add(&self, process: &Shared) {
+        let mut all = self.lock();
+        all.retain(|process| Arc::strong_count(&process.0) > 1);
+        all.push(process.clone());
+    }
+
+    /// Ends all of them.
+    pub fn kill(&self) {
+        self.lock().iter().for_each(Shared::kill);
+    }
+}
+
 /// An ffmpeg that makes a file. One that is dropped before its end is ended, and its file removed.
 pub struct Ffmpeg {
-    child: Child,
+    process: Shared,
     input: Option<ChildStdin>,
-    said: Option<JoinHandle<String>>,
+    said: Receiver<String>,
     file: PathBuf,
 }
 
@@ -29,7 +81,7 @@ pub fn name_of(file: &Path) -> OsString {
 
 impl Ffmpeg {
     /// Starts ffmpeg with these arguments and the file's name behind them. Errors: it is not there.
-    pub fn begin(program: &Path, arguments: &[OsString], file: &Path) -> Result<Self, Ending> {
+    pub fn begin(program: &Path, arguments: &[OsString], file: &Path, running: &Running) -> Result<Self, Ending> {
         let mut command = Command::new(program);
         command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]).args(arguments).arg(name_of(file));
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
@@ -46,8 +98,14 @@ impl Ffmpeg {
             };
             Ending::io(program, format!("{advice}: {error}"))
         })?;
-        let said = child.stderr.take().map(|said| std::thread::spawn(move || last_words(said)));
-        Ok(Self { input: child.stdin.take(), child, said, file: file.to_owned() })
+        let (tell, said) = channel();
+        if let Some(words) = child.stderr.take() {
+            std::thread::spawn(move || tell.send(last_words(words)));
+        }
+        let input = child.stdin.take();
+        let process = Shared(Arc::new(Mutex::new(child)));
+        running.add(&process);
+        Ok(Self { process, input, said, file: file.to_owned() })
     }
 
     /// Gives it bytes. Errors: it has ended.
@@ -55,7 +113,7 @@ impl Ffmpeg {
         let given = self.input.as_mut().map_or(Err(ErrorKind::BrokenPipe.into()), |input| input.write_all(bytes));
         given.map_err(|error| {
             self.close();
-            let _ = self.child.wait();
+            let _ = self.process.wait();
             self.failed(&error.to_string())
         })
     }
@@ -66,14 +124,14 @@ impl Ffmpeg {
     }
 
     /// Whether it has ended.
-    pub fn has_ended(&mut self) -> bool {
-        !matches!(self.child.try_wait(), Ok(None))
+    pub fn has_ended(&self) -> bool {
+        !matches!(self.process.lock().try_wait(), Ok(None))
     }
 
-    /// Waits for its end; its file is there whole. Errors: it failed.
+    /// Waits for its end; its file is there. Errors: it failed.
     pub fn finish(&mut self) -> Result<(), Ending> {
         self.close();
-        match self.child.wait() {
+        match self.process.wait() {
             Ok(status) if status.success() => Ok(()),
             Ok(status) => Err(self.failed(&status.to_string())),
             Err(error) => Err(self.failed(&error.to_string())),
@@ -85,8 +143,8 @@ impl Ffmpeg {
     }
 
     /// Its last words, or why it ended where it said nothing.
-    fn failed(&mut self, why: &str) -> Ending {
-        let said = self.said.take().and_then(|said| said.join().ok()).unwrap_or_default();
+    fn failed(&self, why: &str) -> Ending {
+        let said = self.said.recv_timeout(LAST_WORDS).unwrap_or_default();
         let said = said.trim();
         Ending::io(Path::new("ffmpeg"), if said.is_empty() { why } else { said })
     }
@@ -109,8 +167,8 @@ fn last_words(mut said: impl Read) -> String {
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
         self.close();
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        self.process.kill();
+        let _ = self.process.wait();
         let _ = std::fs::remove_file(&self.file);
     }
 }

@@ -13,12 +13,14 @@ mod tests;
 
 use crate::encode::Done;
 use crate::ending::Ending;
-use crate::manifest::{Fingerprint, Part};
+use crate::manifest::{Fingerprint, Made, Part};
 use crate::signals::Signals;
 use boxes::Video;
 use codec::Codec;
+pub use ffmpeg::Running;
 use ffmpeg::{Ffmpeg, arguments};
 use std::collections::VecDeque;
+use std::ffi::OsString;
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -30,6 +32,9 @@ const MOST_BEHIND: usize = 2;
 
 /// Pieces of a second have this many frames at least: encoders describe shorter ones in another way.
 const FEWEST_FRAMES: usize = 16;
+
+/// Bytes of a fragment. ffmpeg holds one in memory until it is full, and loses what is beyond 2 GiB.
+const FRAGMENT: &str = "268435456";
 
 /// All that decides a video's bytes, beside its pictures.
 pub struct Shape {
@@ -57,6 +62,36 @@ impl Shape {
         if self.frames.saturating_sub(begin) < 2 * piece { self.frames } else { begin + piece }
     }
 
+    /// ffmpeg's arguments, but for the file's.
+    fn arguments(&self) -> Vec<OsString> {
+        let Self { size: [width, height], rate, codec, transparent, .. } = self;
+        let [over, under] = ratio(*rate);
+        let mut list = arguments(["-f", "rawvideo", "-pixel_format", "rgba", "-video_size"]);
+        list.extend(arguments([format!("{width}x{height}"), "-framerate".into(), format!("{over}/{under}")]));
+        // Pixels are those of sRGB, whose primaries are Rec. 709's. By exact arithmetic they are converted alike on all
+        // processors. Each encoder takes what the colours are from another of two places.
+        let (pixels, curve) = (codec.pixels(*transparent), codec.curve());
+        let convert = format!(
+            "scale=in_range=pc:out_range=tv:out_color_matrix=bt709:flags=bicubic+accurate_rnd+full_chroma_int+\
+             bitexact,format={pixels},setparams=range=tv:colorspace=bt709:color_primaries=bt709:color_trc={curve}"
+        );
+        list.extend(arguments(["-i", "pipe:0", "-vf", &convert]));
+        list.extend(arguments(codec.arguments(*transparent)));
+        let keys = (2 * self.piece()).to_string();
+        list.extend(arguments([
+            "-g",
+            &keys,
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_range",
+            "tv",
+        ]));
+        list.extend(arguments(["-color_trc", curve, "-fflags", "+bitexact", "-flags:v", "+bitexact"]));
+        list
+    }
+
     /// In words that differ where the bytes of videos do.
     pub fn words(&self) -> String {
         let Self { size, rate, frames, codec, transparent, description, .. } = self;
@@ -81,6 +116,8 @@ pub fn ratio(rate: f64) -> [u32; 2] {
 /// A piece that is being encoded.
 struct Piece {
     ffmpeg: Ffmpeg,
+    /// The place of its first frame in the video.
+    begin: usize,
     /// Its frames, with the seconds that each took.
     frames: Vec<(u32, f64)>,
 }
@@ -114,13 +151,19 @@ impl Files {
         self.whole.with_file_name(format!("{}{}-{name}{PASSING}", self.beginning(), std::process::id()))
     }
 
-    /// Removes what a program has left that was killed.
-    fn tidy(&self) {
+    /// Removes the pieces of a program that was killed.
+    pub fn tidy(&self) {
         let folder = self.whole.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let beginning = self.beginning();
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            if name.starts_with(&beginning) && name.ends_with(PASSING) {
+            let middle = name.strip_prefix(&beginning).and_then(|rest| rest.strip_suffix(PASSING));
+            // The pieces of a video whose name begins alike are another's.
+            let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+            if let Some((process, piece)) = middle.and_then(|middle| middle.split_once('-'))
+                && is_number(process)
+                && (is_number(piece) || piece == WHOLE)
+            {
                 let _ = std::fs::remove_file(entry.path());
             }
         }
@@ -128,6 +171,7 @@ impl Files {
 }
 
 const PASSING: &str = ".piece";
+const WHOLE: &str = "whole";
 
 /// A video that is being made; the claim on its name is held.
 pub struct Writer {
@@ -143,25 +187,58 @@ pub struct Writer {
     given: usize,
     current: Option<Piece>,
     behind: VecDeque<Piece>,
+    running: Running,
+    /// After a mistake nothing is added.
+    failed: bool,
+}
+
+/// Encodes some black frames into nothing, as the video's will be. Errors: ffmpeg is not there, or cannot do it.
+pub fn try_ffmpeg(shape: &Shape, files: &Files) -> Result<(), Ending> {
+    let mut list = shape.arguments();
+    list.extend(arguments(["-f", "null"]));
+    let mut ffmpeg = Ffmpeg::begin(&files.ffmpeg, &list, Path::new("-"), &Running::default())?;
+    let [width, height] = shape.size;
+    let row = vec![0; 4 * width as usize];
+    for _ in 0..2 * height {
+        ffmpeg.give(&row)?;
+    }
+    ffmpeg.finish()
 }
 
 impl Writer {
     /// Opens a video of which `there` is there already. Errors: IO.
-    pub fn open(shape: Shape, files: Files, of: Fingerprint, there: Option<Part>) -> Result<Self, Ending> {
-        files.tidy();
+    pub fn open(
+        shape: Shape,
+        files: Files,
+        of: Fingerprint,
+        there: Option<Part>,
+        running: Running,
+    ) -> Result<Self, Ending> {
         let path = files.part();
         let opened = || -> std::io::Result<_> {
             let file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path)?;
             // A note of frames that the disk has lost is none.
             let length = file.metadata()?.len();
             let there = there.filter(|part| part.bytes <= length && part.frames <= shape.frames);
-            let there = there.unwrap_or_default();
-            file.set_len(there.bytes)?;
-            Ok((file, there))
+            Ok((file, there.unwrap_or_default()))
         };
         let (file, there) = opened().map_err(|error| Ending::io(&path, error))?;
-        let given = there.frames;
-        Ok(Self { shape, files, of, file, there, header: None, given, current: None, behind: VecDeque::new() })
+        // Before its content changes: what another video's note says of it is true no more.
+        there.note(&path, &of, &files.manifest)?;
+        file.set_len(there.bytes).map_err(|error| Ending::io(&path, error))?;
+        Ok(Self {
+            given: there.frames,
+            shape,
+            files,
+            of,
+            file,
+            there,
+            header: None,
+            current: None,
+            behind: VecDeque::new(),
+            running,
+            failed: false,
+        })
     }
 
     /// The frames that are there.
@@ -171,23 +248,38 @@ impl Writer {
 
     /// Adds a picture; the frames that have come to be there, on disk. Errors: ffmpeg's, and those of files.
     pub fn add(&mut self, frame: u32, seconds: f64, pixels: &[u8]) -> Result<Vec<Done>, Ending> {
+        self.unless_failed(|video| video.add_frame(frame, seconds, pixels))
+    }
+
+    /// Runs something of which a mistake is this video's end in this run. The pieces before it may still be appended.
+    fn unless_failed<T>(&mut self, run: impl FnOnce(&mut Self) -> Result<T, Ending>) -> Result<T, Ending> {
+        if self.failed {
+            return Err(Ending::io(&self.files.whole, "it has failed"));
+        }
+        let result = run(self);
+        if result.is_err() {
+            self.failed = true;
+            self.current = None;
+        }
+        result
+    }
+
+    fn add_frame(&mut self, frame: u32, seconds: f64, pixels: &[u8]) -> Result<Vec<Done>, Ending> {
         let mut piece = match self.current.take() {
             Some(piece) => piece,
-            None => Piece { ffmpeg: self.begin_piece()?, frames: Vec::new() },
+            None => Piece { ffmpeg: self.begin_piece()?, begin: self.given, frames: Vec::new() },
         };
         piece.ffmpeg.give(pixels)?;
         piece.frames.push((frame, seconds));
         self.given += 1;
-        let begin = self.given - piece.frames.len();
-        if self.given < self.shape.end_of_piece(begin) {
+        if self.given < self.shape.end_of_piece(piece.begin) {
             self.current = Some(piece);
         } else {
             piece.ffmpeg.close();
             self.behind.push_back(piece);
         }
         let mut done = Vec::new();
-        while self.behind.len() > MOST_BEHIND || self.behind.front_mut().is_some_and(|oldest| oldest.ffmpeg.has_ended())
-        {
+        while self.behind.len() > MOST_BEHIND || self.behind.front().is_some_and(|oldest| oldest.ffmpeg.has_ended()) {
             done.extend(self.append_oldest()?);
         }
         Ok(done)
@@ -204,15 +296,24 @@ impl Writer {
 
     /// Makes the ordinary video of all frames, under its name. Errors: as [`Self::add`]; the end that a signal asks
     /// for.
-    pub fn end(&mut self, signals: &Signals) -> Result<Vec<Done>, Ending> {
+    pub fn end(&mut self, made: &Made, signals: &Signals) -> Result<Vec<Done>, Ending> {
         let done = self.settle()?;
-        let (part, passing) = (self.files.part(), self.files.passing("whole"));
+        self.unless_failed(|video| video.make_whole(made, signals))?;
+        Ok(done)
+    }
+
+    fn make_whole(&self, made: &Made, signals: &Signals) -> Result<(), Ending> {
+        let (part, passing) = (self.files.part(), self.files.passing(WHOLE));
+        if self.there.frames != self.shape.frames {
+            let (there, all) = (self.there.frames, self.shape.frames);
+            return Err(Ending::io(&part, format!("it has {there} frames of {all}")));
+        }
         let mut list = arguments(["-i"]);
         list.push(ffmpeg::name_of(&part));
         // Boxes for 360-degree players are unofficial to ffmpeg. An index at the beginning lets browsers begin at once.
         let kept = ["-map", "0", "-c", "copy", "-strict", "unofficial", "-movflags", "+faststart"];
         list.extend(arguments(kept.into_iter().chain(["-fflags", "+bitexact", "-f", self.files.format()])));
-        let mut ffmpeg = Ffmpeg::begin(&self.files.ffmpeg, &list, &passing)?;
+        let mut ffmpeg = Ffmpeg::begin(&self.files.ffmpeg, &list, &passing, &self.running)?;
         ffmpeg.close();
         while !ffmpeg.has_ended() {
             signals.check()?;
@@ -220,58 +321,49 @@ impl Writer {
         }
         ffmpeg.finish()?;
         let whole = &self.files.whole;
-        let rename = || -> std::io::Result<()> {
+        let check = || -> std::io::Result<()> {
             OpenOptions::new().write(true).open(&passing)?.sync_all()?;
-            std::fs::rename(&passing, whole)
+            boxes::check_whole(File::open(&passing)?, self.shape.frames as u64)
         };
-        rename().map_err(|error| Ending::io(whole, error))?;
-        Ok(done)
-    }
-
-    /// Removes the file of fragments, once the whole is noted.
-    pub fn remove_part(&self) {
-        let _ = std::fs::remove_file(self.files.part());
+        check().map_err(|error| Ending::io(whole, error))?;
+        // A program that is killed from here on leaves a video that counts as not made, and its fragments.
+        made.announce(&self.files.manifest)?;
+        std::fs::rename(&passing, whole).map_err(|error| Ending::io(whole, error))?;
+        made.note(&self.files.manifest)?;
+        let _ = std::fs::remove_file(&part);
+        Ok(())
     }
 
     fn begin_piece(&self) -> Result<Ffmpeg, Ending> {
-        let Shape { size: [width, height], rate, codec, transparent, .. } = &self.shape;
-        let [over, under] = ratio(*rate);
-        let mut list = arguments(["-f", "rawvideo", "-pixel_format", "rgba", "-video_size"]);
-        list.extend(arguments([format!("{width}x{height}"), "-framerate".into(), format!("{over}/{under}")]));
-        // Pixels are those of sRGB, whose primaries are Rec. 709's. By exact arithmetic they are converted alike on all
-        // processors. Each encoder takes what the colours are from another of two places.
-        let (pixels, curve) = (codec.pixels(*transparent), codec.curve());
-        let convert = format!(
-            "scale=in_range=pc:out_range=tv:out_color_matrix=bt709:flags=bicubic+accurate_rnd+full_chroma_int+\
-             bitexact,format={pixels},setparams=range=tv:colorspace=bt709:color_primaries=bt709:color_trc={curve}"
-        );
-        list.extend(arguments(["-i", "pipe:0", "-vf", &convert]));
-        list.extend(arguments(codec.arguments(*transparent)));
-        let keys = (2 * self.shape.piece()).to_string();
+        let mut list = self.shape.arguments();
+        let [over, _] = ratio(self.shape.rate);
         let ticks = ticks_per_second(over).to_string();
-        list.extend(arguments([
-            "-g",
-            &keys,
-            "-colorspace",
-            "bt709",
-            "-color_primaries",
-            "bt709",
-            "-color_range",
-            "tv",
-        ]));
-        list.extend(arguments(["-color_trc", curve, "-fflags", "+bitexact", "-flags:v", "+bitexact"]));
-        list.extend(arguments(["-movflags", "+empty_moov+delay_moov+default_base_moof"]));
+        list.extend(arguments(["-movflags", "+empty_moov+delay_moov+default_base_moof", "-frag_size", FRAGMENT]));
         list.extend(arguments(["-video_track_timescale", &ticks, "-f", self.files.format()]));
-        Ffmpeg::begin(&self.files.ffmpeg, &list, &self.files.passing(self.given))
+        Ffmpeg::begin(&self.files.ffmpeg, &list, &self.files.passing(self.given), &self.running)
     }
 
     fn append_oldest(&mut self) -> Result<Vec<Done>, Ending> {
-        let Some(mut piece) = self.behind.pop_front() else { return Ok(Vec::new()) };
+        let Some(piece) = self.behind.pop_front() else { return Ok(Vec::new()) };
+        let appended = self.append(piece);
+        if appended.is_err() {
+            // The pieces behind it would take its place.
+            self.failed = true;
+            self.behind.clear();
+        }
+        appended
+    }
+
+    fn append(&mut self, mut piece: Piece) -> Result<Vec<Done>, Ending> {
         piece.ffmpeg.finish()?;
         let path = self.files.part();
         let broken = |error| Ending::io(&path, error);
         let mut video = File::open(piece.ffmpeg.file()).and_then(Video::read).map_err(broken)?;
+        boxes::remove_dependencies(&mut video.header).map_err(broken)?;
         boxes::describe(&mut video.header, &self.shape.description).map_err(broken)?;
+        if piece.begin != self.there.frames {
+            return Err(Ending::io(&path, format!("its piece at frame {} is missing", self.there.frames)));
+        }
         self.check_header(&video.header)?;
         let [over, under] = ratio(self.shape.rate);
         let ticks = u64::from(video.ticks_per_second().map_err(broken)?);
@@ -304,7 +396,8 @@ impl Writer {
         match &self.header {
             Some(there) if *there != header => Err(Ending::io(
                 &self.files.part(),
-                "this ffmpeg describes frames in another way than the one that made what is there; --again begins anew",
+                "a piece describes its frames in another way than those that are there, as of another ffmpeg; --again \
+                 begins anew",
             )),
             _ => Ok(()),
         }

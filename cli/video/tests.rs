@@ -111,6 +111,49 @@ fn a_description_grows_all_that_hold_it() {
     assert!(boxes::describe(&mut boxed(b"moov", &[]), b"x").is_err());
 }
 
+/// A video of frames of these sizes, so many bytes of them being there.
+fn whole(sizes: &[u8], bytes: usize) -> Vec<u8> {
+    let mut table = vec![0; 12];
+    table[11] = sizes.len() as u8;
+    table.extend(sizes.iter().flat_map(|size| [0, 0, 0, *size]));
+    let tables = boxed(b"stbl", &boxed(b"stsz", &table));
+    let track = boxed(b"trak", &boxed(b"mdia", &boxed(b"minf", &tables)));
+    [boxed(b"ftyp", b"isom"), boxed(b"moov", &track), boxed(b"mdat", &vec![0; bytes])].concat()
+}
+
+#[test]
+fn videos_that_are_cut_off_are_not_whole() {
+    let check = |bytes: &[u8], frames| {
+        let mut file = tempfile::tempfile().unwrap();
+        std::io::Write::write_all(&mut file, bytes).unwrap();
+        boxes::check_whole(file, frames)
+    };
+    let video = whole(&[100, 30, 20], 150);
+    assert!(check(&video, 3).is_ok());
+    assert!(check(&video, 2).is_err() && check(&video, 4).is_err());
+    for end in 0..video.len() {
+        assert!(check(&video[..end], 3).is_err(), "{end}");
+    }
+    assert!(check(&whole(&[100, 30, 20], 100), 3).is_err());
+}
+
+#[test]
+fn headers_do_not_say_which_frames_others_need() {
+    let mut with = header();
+    let table = with.windows(4).position(|kind| kind == b"stts").unwrap() - 4;
+    // Beside stts, in the same box: all that hold it are larger by twelve bytes.
+    let plain = with.clone();
+    for kind in [b"moov", b"trak", b"mdia", b"minf", b"stbl"] {
+        let at = with.windows(4).position(|four| four == kind).unwrap() - 1;
+        with[at] += 12;
+    }
+    with.splice(table..table, boxed(b"sdtp", &[0; 4]));
+    boxes::remove_dependencies(&mut with).unwrap();
+    assert_eq!(with, plain);
+    boxes::remove_dependencies(&mut with).unwrap();
+    assert_eq!(with, plain);
+}
+
 #[test]
 fn broken_videos_are_errors() {
     let whole = [header(), fragment(4, 1)].concat();
@@ -129,6 +172,7 @@ fn broken_videos_are_errors() {
         if let Ok(mut video) = read(&broken) {
             let _ = video.ticks_per_second();
             let _ = video.append(&mut tempfile::tempfile().unwrap(), 1, 1);
+            let _ = boxes::remove_dependencies(&mut video.header);
             let _ = boxes::describe(&mut video.header, b"12345678");
         }
     }

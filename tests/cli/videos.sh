@@ -35,7 +35,8 @@ a_video() {
 # Its frames are those of pictures, but for what the codec loses: 38 dB is a faint loss.
 as_pictures() {
     local frame=37 found
-    video --out "$scratch/video.png" --frames "$frame" >/dev/null &&
+    timeout 300 "$bhr" render "$scratch/video.toml" --backend cpu --out "$scratch/video.png" --frames "$frame" \
+        >/dev/null &&
         ffmpeg -v error -y -i "$scratch/video/v.mp4" -vf "select=eq(n\\,$frame),scale=in_color_matrix=bt709" \
             -vframes 1 "$scratch/video.frame.png" || return 1
     found=$(compare -metric PSNR "$scratch/video.png" "$scratch/video.frame.png" null: 2>&1)
@@ -49,11 +50,11 @@ killed_videos() {
     local folder=$scratch/killed-video i pid noted found runs=3
     ! runs_all || runs=30
     for ((i = 0; i < runs; i++)); do
-        video --out "$folder/v.mp4" --progress none &
+        "$bhr" render "$scratch/video.toml" --backend cpu --progress none --keyframes 16 --out "$folder/v.mp4" &
         pid=$!
         sleep "0.$((RANDOM % 9))"
         sleep "$((i % 2))"
-        pkill -KILL -P "$pid"
+        kill -KILL "$pid" 2>/dev/null
         wait "$pid" 2>/dev/null
         [ ! -e "$folder/v.mp4" ] || break
         [ $((i % 3)) -ne 2 ] || pkill -KILL -f "file:$folder"
@@ -100,6 +101,40 @@ another_video() {
     video --out "$folder/v.mp4" >/dev/null && only_the_video "$folder"
 }
 
+# failing PIECE: an ffmpeg that fails at the piece that begins at this frame, after the next one has been made.
+failing() {
+    printf '#!/bin/bash\ncase ${!#} in *-%s.piece) cat >/dev/null; sleep 2; exit 1 ;; esac\nexec ffmpeg "$@"\n' "$1" \
+        >"$scratch/failing-ffmpeg"
+    chmod +x "$scratch/failing-ffmpeg"
+}
+
+# A piece that fails, in the middle or at the end: no other takes its place, and the next run makes the rest.
+failed_pieces() {
+    local begin folder
+    for begin in 16 48; do
+        folder=$scratch/failed-$begin
+        failing "$begin"
+        status 74 video --out "$folder/v.mp4" --ffmpeg "$scratch/failing-ffmpeg" && [ ! -e "$folder/v.mp4" ] &&
+            [ "$(frames_in "$folder/v.part.mp4")" -eq "$begin" ] &&
+            video --out "$folder/v.mp4" >/dev/null && only_the_video "$folder" || return 1
+    done
+}
+
+# Files that bhr has not made stay as they are, and no video counts as there that no manifest names.
+foreign_files() {
+    local folder=$scratch/foreign name
+    for name in v.mp4 v.part.mp4; do
+        rm -rf -- "$folder" && mkdir -- "$folder" && echo precious >"$folder/$name" &&
+            status 64 video --out "$folder/v.mp4" && grep "$name" "$scratch/said" &&
+            [ "$(cat -- "$folder/$name")" = precious ] && [ ! -e "$folder/v.mp4.lock" ] || return 1
+    done
+    rm -rf -- "$folder" && mkdir -p -- "$folder/v.mp4" && status 64 video --out "$folder/v.mp4" || return 1
+    # One whose program was killed between renaming and noting it is made whole again; pieces of the dead go.
+    rm -rf -- "$folder" && cp -r -- "$scratch/video" "$folder" && : >"$folder/.v.mp4.1-16.piece" &&
+        printf '{"file":"v.mp4","frame":0}\n' >>"$folder/v.manifest.jsonl" && video --out "$folder/v.mp4" >/dev/null &&
+        only_the_video "$folder"
+}
+
 # A 360-degree film of two eyes says so to players.
 panorama() {
     sed 's/projection = .*/projection = "equirect"\neye_distance = 0.1/; s/^height = .*/height = 16/; /^fov_y/d' \
@@ -114,6 +149,14 @@ panorama() {
         ffprobe -v error -show_streams "$scratch/half.mp4" | tee "$scratch/said" >/dev/null &&
         grep -x 'projection=tiled equirectangular' "$scratch/said" && grep -x 'type=side by side' "$scratch/said" ||
         return 1
+    # So it is where the scene has a region, as with one eye of that part.
+    "${panorama[@]}" --codec h265 --tile 8,0,16,16 --out "$scratch/tile.mp4" || return 1
+    sed 's/^\[render\]/[region]\nfull_width = 32\nfull_height = 16\nx = 8\n\n&/; s/^width = .*/width = 16/' \
+        "$scratch/panorama.toml" >"$scratch/region.toml" &&
+        timeout 300 "$bhr" render "$scratch/region.toml" --backend cpu --progress none --frames 0-3 \
+            --out "$scratch/region.mp4" --codec h265 &&
+        diff <(ffprobe -v error -show_streams "$scratch/tile.mp4" | grep bound_) \
+            <(ffprobe -v error -show_streams "$scratch/region.mp4" | grep bound_) || return 1
     # The halves of a frame of both eyes are the frames of each.
     local eye
     for eye in left right; do
@@ -143,6 +186,13 @@ codecs() {
             [[ $(ffprobe -v error -show_entries stream=pix_fmt -of csv=p=0 "$scratch/codecs/$name") == "$pixels"* ]] &&
             [ "$(frames_in "$scratch/codecs/$name")" -eq 2 ] || return 1
     done
+    # Pieces of one film agree in what they say of their frames, calm ones and those in which much moves.
+    for codec in h265 av1; do
+        video --out "$scratch/codecs/$codec.mp4" --frames 0-47 --size 64x64 --codec "$codec" >/dev/null &&
+            [ "$(frames_in "$scratch/codecs/$codec.mp4")" -eq 48 ] || return 1
+    done
+    video --out "$scratch/codecs/small.mp4" --frames 0-47 --size 16x16 --codec h265 >/dev/null &&
+        [ "$(frames_in "$scratch/codecs/small.mp4")" -eq 48 ]
 }
 
 mistakes_of_videos() {
@@ -155,8 +205,13 @@ mistakes_of_videos() {
     status 64 video --out "$out" --keyframes 15 || return 1
     status 64 video --out "$out" --outputs depth || return 1
     status 64 video --out "$scratch/mistakes/v.####.mp4" || return 1
-    status 64 video --out "$scratch/mistakes/v.####.png" --quality 3 || return 1
+    status 64 render --out "$scratch/mistakes/v.####.png" --quality 3 || return 1
     status 64 video --out "$out" --stereo cross-eyed || return 1
+    status 64 video --out "$out" --encoders 2 || return 1
+    status 64 video --out "$scratch/mistakes/v.####.png" --keyframes 20 || return 1
+    status 64 video --out "$scratch/mistakes/..mp4" || return 1
+    status 64 video --out "$scratch/mistakes/v.part.mp4" || return 1
+    status 74 video --out "$out" --dry-run --ffmpeg "$scratch/nowhere" || return 1
     # A dome has no two eyes.
     status 65 video --out "$out" --stereo top-bottom || return 1
     status 74 video --out "$out" --ffmpeg "$scratch/nowhere" && grep -q 'not found' "$scratch/said" || return 1
@@ -184,4 +239,54 @@ layers() {
         status 64 render --out "$out" --frames 2 --outputs position16 &&
         status 64 render --out "$out" --frames 2 --outputs sky1 &&
         status 64 render --out "$scratch/layers.png" --frames 2 --outputs depth
+}
+
+# An ffmpeg that hangs holds nothing up for long after a signal.
+hanging_ffmpeg() {
+    local folder=$scratch/hanging found=0 pid begin
+    printf '#!/bin/bash\ncase ${!#} in *-16.piece) exec sleep 601.5 ;; esac\nexec ffmpeg "$@"\n' \
+        >"$scratch/hanging-ffmpeg"
+    chmod +x "$scratch/hanging-ffmpeg"
+    "$bhr" render "$scratch/video.toml" --backend cpu --keyframes 16 --size 256x256 --out "$folder/v.mp4" \
+        --ffmpeg "$scratch/hanging-ffmpeg" >/dev/null 2>&1 &
+    pid=$!
+    until pgrep -f 'sleep 601.5' >/dev/null; do
+        sleep 0.1
+    done
+    sleep 3
+    begin=$SECONDS
+    kill -TERM "$pid"
+    wait "$pid" || found=$?
+    echo "status $found after $((SECONDS - begin)) s"
+    [ "$found" -eq 143 ] && [ $((SECONDS - begin)) -lt 40 ] && [ -z "$(find "$folder" -name '*.piece')" ] &&
+        [ "$(frames_in "$folder/v.part.mp4")" -eq 16 ]
+}
+
+# Disks that are full at one point or another, also in the end, where ffmpeg may report success: a video is whole or not
+# there.
+full_disk_of_videos() {
+    local as=-m
+    [ "$(id -u)" -eq 0 ] || as=-rm
+    export scratch bhr
+    export -f status video frames_in on_full_disk_of_videos
+    export video_frames
+    unshare "$as" bash -c on_full_disk_of_videos
+}
+
+on_full_disk_of_videos() {
+    local folder=$scratch/small-video size found refused=0
+    mkdir -p -- "$folder" || return 1
+    for size in 4 8 12 16 20 24 28; do
+        mount -t tmpfs -o size="${size}k" none "$folder" || return 1
+        found=0
+        video --out "$folder/v.mp4" >"$scratch/said" 2>&1 || found=$?
+        echo "$size KiB: status $found"
+        case $found in
+            0) [ "$(frames_in "$folder/v.mp4")" -eq "$video_frames" ] || return 1 ;;
+            74) [ ! -e "$folder/v.mp4" ] && refused=$((refused + 1)) || return 1 ;;
+            *) return 1 ;;
+        esac
+        umount "$folder" || return 1
+    done
+    [ "$refused" -ge 3 ]
 }
