@@ -119,7 +119,7 @@ impl Part {
 /// as none.
 pub struct Manifest {
     path: PathBuf,
-    lines: HashMap<String, Value>,
+    lines: HashMap<String, Line>,
     /// Bytes that have been read.
     end: u64,
 }
@@ -149,7 +149,7 @@ impl Manifest {
         for line in String::from_utf8_lossy(bytes.get(..whole).unwrap_or_default()).lines() {
             let Ok(line) = serde_json::from_str::<Value>(line) else { continue };
             if let Some(file) = line["file"].as_str() {
-                self.lines.insert(file.to_owned(), line);
+                self.lines.insert(file.to_owned(), Line::of(&line));
             }
         }
     }
@@ -172,22 +172,48 @@ impl Manifest {
 
     /// How much of a video is there, of one that is like `of` in all.
     pub fn part_of(&self, file: &Path, of: &Fingerprint) -> Option<Part> {
-        let line = self.lines.get(&name_of(file)).filter(|line| line["video"] == of.scene.as_str())?;
-        Some(Part { frames: usize::try_from(line["frames"].as_u64()?).ok()?, bytes: line["bytes"].as_u64()? })
+        match self.lines.get(&name_of(file))? {
+            Line::Part { video, part } if **video == of.scene => Some(*part),
+            _ => None,
+        }
     }
 
     /// The frame that a file shows. The outer `None`: nobody has noted it; the inner one: it was being written.
     pub fn frame_of(&self, file: &Path) -> Option<Option<Fingerprint>> {
-        let line = self.lines.get(&name_of(file))?;
+        match self.lines.get(&name_of(file))? {
+            Line::Whole { frame, scene, tile } => {
+                let tile = tile.as_deref().copied();
+                Some(Some(Fingerprint { frame: *frame, scene: scene.as_ref().into(), tile }))
+            }
+            Line::Part { .. } | Line::Announced => Some(None),
+        }
+    }
+}
+
+/// The part of a line that counts. Films of many frames have many lines.
+enum Line {
+    Announced,
+    Whole { frame: u32, scene: Box<str>, tile: Option<Box<Tile>> },
+    Part { video: Box<str>, part: Part },
+}
+
+impl Line {
+    fn of(line: &Value) -> Self {
         let number = |value: &Value| value.as_u64().and_then(|number| u32::try_from(number).ok());
         let side = |name: &str| number(&line["tile"][name]);
         let tile = || {
             let (full_width, full_height) = (side("full_width")?, side("full_height")?);
             let region = Region { full_width, full_height, x: side("x")?, y: side("y")? };
-            Some(Tile { region, size: [side("width")?, side("height")?] })
+            Some(Box::new(Tile { region, size: [side("width")?, side("height")?] }))
         };
-        let scene = line["scene"].as_str().map(str::to_owned);
-        let whole = scene.and_then(|scene| Some(Fingerprint { frame: number(&line["frame"])?, scene, tile: tile() }));
-        Some(whole)
+        let part = || {
+            let frames = usize::try_from(line["frames"].as_u64()?).ok()?;
+            Some(Part { frames, bytes: line["bytes"].as_u64()? })
+        };
+        match (line["scene"].as_str(), number(&line["frame"]), line["video"].as_str(), part()) {
+            (Some(scene), Some(frame), _, _) => Self::Whole { frame, scene: scene.into(), tile: tile() },
+            (_, _, Some(video), Some(part)) => Self::Part { video: video.into(), part },
+            _ => Self::Announced,
+        }
     }
 }

@@ -102,6 +102,51 @@ def test_a_film(tmp_path):
         bhr.render_film(scene, tmp_path / "f.png", backend="cpu")
 
 
+def test_a_light_curve(tmp_path):
+    # A hot spot at r = 7 M and spin 0.5, seen from above its plane: its period is 2 pi (r^1.5 + a).
+    period = 2.0 * np.pi * (7.0**1.5 + 0.5)
+    scene = tmp_path / "spot.toml"
+    scene.write_text(
+        f"""
+        disk = false
+        time = {{ keys = [[0, 0], [2, {2.0 * period!r}]] }}
+        [hole]
+        spin = 0.5
+        [camera]
+        orbit = {{ distance = 200, elevation = "30 deg" }}
+        fov_y = "6 deg"
+        [[hot_spots]]
+        radius = 7
+        [sky]
+        flags = []
+        [render]
+        width = 40
+        height = 40
+        """
+    )
+    told = []
+    times = np.arange(0.0, 2.0, 0.25)
+    curve = bhr.light_curve(scene, times, backend="cpu", progress=lambda n, sum: told.append(n))
+    assert curve.shape == (8, 3) and told == list(range(8)) and (curve > 0.0).all()
+    # The same after an orbit, another in between: beaming and lensing.
+    assert np.allclose(curve[:4], curve[4:], rtol=1e-6)
+    assert curve[:, 1].max() > 1.3 * curve[:, 1].min()
+    with bhr.Context("cpu") as ctx:
+        ctx.load(scene)
+        ctx.at(0.25)
+        light = ctx.render(40, 40, format=bhr.Format.RGBA32F).array.astype(float)[:, :, :3]
+    # So narrow a field is flat to 0.3 %.
+    assert np.allclose(curve[1], light.sum(axis=(0, 1)) * (2.0 * np.tan(np.radians(3.0)) / 40) ** 2, rtol=4e-3)
+    # Any size is the same light, but for the pixels' width.
+    finer = bhr.light_curve(scene, [0.25], backend="cpu", size=(64, 64))
+    assert np.allclose(finer[0], curve[1], rtol=0.05)
+    scene.write_text(scene.read_text().replace("disk = false", 'disk = false\nview = "order"'))
+    assert bhr.light_curve(scene, [0.0, 1.0], backend="cpu").shape == (2,)
+    scene.write_text(scene.read_text().replace('fov_y = "6 deg"', 'projection = "equirect"'))
+    with pytest.raises(ValueError, match="EQUIRECT"):
+        bhr.light_curve(scene, [0.0], backend="cpu")
+
+
 def test_nothing_instead_of_disk_sky_region(ctx):
     ctx.disk = ctx.sky = ctx.region = None
     assert ctx.disk is None and ctx.sky.flags == 0 and ctx.region is None

@@ -44,7 +44,7 @@ from ._constants import (
 )
 from ._context import Context
 from ._ffi import ffi as _ffi
-from ._film import render_film
+from ._film import light_curve, render_film
 from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
@@ -125,6 +125,7 @@ __all__ = [
     "VolumeShape",
     "adapters",
     "interop",
+    "light_curve",
     "load",
     "rays",
     "render_film",
