@@ -36,6 +36,10 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).help(help)
 }
 
+fn flag(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
+}
+
 fn device() -> [Arg; 2] {
     [
         option("backend", "NAME", "auto, cpu, vulkan, metal, d3d12 or gl").default_value("auto"),
@@ -61,16 +65,8 @@ fn command() -> Command {
         .arg(option("size", "WxH", "Pixels, instead of the scene's"))
         .arg(option("tile", "X,Y,W,H", "Only this part of each frame"))
         .arg(option("samples", "N", "Rays of a pixel, instead of the scene's").value_parser(value_parser!(u32)))
-        .arg(
-            option("float", "", "Pixels of 32 bits in .exr files, instead of 16")
-                .num_args(0)
-                .action(ArgAction::SetTrue),
-        )
-        .arg(
-            option("transparent", "", "Without the sky; alpha says where it was")
-                .num_args(0)
-                .action(ArgAction::SetTrue),
-        )
+        .arg(flag("float", "Pixels of 32 bits in .exr files, instead of 16"))
+        .arg(flag("transparent", "Without the sky; alpha says where it was"))
         .arg(option("outputs", "LIST", "Layers of .exr files beside the light: depth,sky,position,position1 .."))
         .arg(option("stereo", "PLACES", "Both eyes of a panorama: top-bottom or side-by-side"))
         .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265, av1, prores (.mov) or prores4444"))
@@ -90,22 +86,12 @@ fn command() -> Command {
             option("ffmpeg", "FILE", "The program that encodes videos; default ffmpeg")
                 .value_parser(value_parser!(PathBuf)),
         )
+        .arg(flag("again", "Renders also the frames that are there already"))
         .arg(
-            option("again", "", "Renders also the frames that are there already")
-                .num_args(0)
-                .action(ArgAction::SetTrue),
-        )
-        .arg(
-            option("continue", "", "Goes on with what is there, as without it; the opposite of --again")
-                .num_args(0)
-                .action(ArgAction::SetTrue)
+            flag("continue", "Goes on with what is there, as without it; the opposite of --again")
                 .overrides_with("again"),
         )
-        .arg(
-            option("dry-run", "", "Renders three small frames, and says what the whole takes")
-                .num_args(0)
-                .action(ArgAction::SetTrue),
-        )
+        .arg(flag("dry-run", "Renders three small frames, and says what the whole takes"))
         .arg(
             option("encoders", "N", "Threads that write files, to 256; 0: one a core")
                 .value_parser(value_parser!(u32).range(0..=MOST_ENCODERS)),

@@ -128,7 +128,7 @@ def test_a_light_curve(tmp_path):
     times = np.arange(0.0, 2.0, 0.25)
     curve = bhr.light_curve(scene, times, backend="cpu", progress=lambda n, sum: told.append(n))
     assert curve.shape == (8, 3) and told == list(range(8)) and (curve > 0.0).all()
-    # The same after an orbit, another in between: beaming and lensing.
+    # After an orbit the light is the same; in between beaming and lensing change it.
     assert np.allclose(curve[:4], curve[4:], rtol=1e-6)
     assert curve[:, 1].max() > 1.3 * curve[:, 1].min()
     with bhr.Context("cpu") as ctx:

@@ -76,11 +76,11 @@ def light_curve(
     size: tuple[int, int] | None = None,
     progress: Callable[[int, Any], object] | None = None,
 ) -> npt.NDArray[np.float64]:
-    """The light of a scene file at each of `times`, which are the film's seconds, as `Context.at` takes them: the sum of
-    the frame's linear light, each pixel times its solid angle in steradians. Its shape is (times, 3), red, green and
-    blue by Rec. 709, before all film; of a scene whose view is not LIGHT it is (times,), the view's values. Where a view
-    has no value (NaN), none is added. `size` is that of the frames, instead of the scene's; `progress` is told each
-    time's number and sum. ValueError: the camera's projection is another than PERSPECTIVE."""
+    """The light of a scene file at each of `times`, which are the film's seconds, as `Context.at` takes them: the sum
+    of the frame's linear light, each pixel times its solid angle in steradians. Its shape is (times, 3), red, green and
+    blue by Rec. 709, before all film; of a scene whose view is not LIGHT it is (times,), the view's values. Where a
+    view has no value (NaN), none is added. `size` is that of the frames, instead of the scene's; `progress` is told
+    each time's number and sum. ValueError: the camera's projection is another than PERSPECTIVE."""
     sums = []
     with Context(backend) as ctx:
         ctx.load(scene)
