@@ -112,6 +112,7 @@ missing_packages() {
     luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing doxygen doxygen
     missing ffmpeg ffmpeg ffprobe
+    missing procps pkill pgrep
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }
