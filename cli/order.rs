@@ -38,7 +38,7 @@ pub struct Order {
     /// The full frame of one eye.
     size: [u32; 2],
     /// The part of the full frame.
-    pub tile: Option<[u32; 4]>,
+    tile: Option<[u32; 4]>,
     samples: Option<u32>,
     /// The video that frames go into; `None`: each has a file of its own.
     pub codec: Option<Codec>,

@@ -30,7 +30,7 @@ use std::time::Duration;
 /// look ahead, and do most of their work only then.
 const MOST_BEHIND: usize = 2;
 
-/// Pieces of a second have this many frames at least: encoders describe shorter ones in another way.
+/// A piece has this many frames at least: encoders describe shorter ones in another way.
 const FEWEST_FRAMES: usize = 16;
 
 /// Bytes of a fragment. ffmpeg holds one in memory until it is full, and loses what is beyond 2 GiB.

@@ -47,13 +47,18 @@ as_pictures() {
 # Killed at any moment, its processes as well where a farm does so: all that was noted plays, and in the end the video
 # is the one of an undisturbed run.
 killed_videos() {
-    local folder=$scratch/killed-video i pid noted found runs=3
+    local folder=$scratch/killed-video i pid noted found seen=0 runs=3
     ! runs_all || runs=30
     for ((i = 0; i < runs; i++)); do
         "$bhr" render "$scratch/video.toml" --backend cpu --progress none --keyframes 16 --out "$folder/v.mp4" &
         pid=$!
-        sleep "0.$((RANDOM % 9))"
-        sleep "$((i % 2))"
+        if [ "$i" -eq 0 ]; then
+            until grep -qsE '"frames":[1-9]' "$folder/v.manifest.jsonl" || ! kill -0 "$pid"; do
+                sleep 0.02
+            done
+        else
+            sleep "$((i % 2)).$((RANDOM % 9))"
+        fi
         kill -KILL "$pid" 2>/dev/null
         wait "$pid" 2>/dev/null
         [ ! -e "$folder/v.mp4" ] || break
@@ -65,7 +70,9 @@ print(max([0] + [line.get("frames", 0) for line in lines]))' <"$folder/v.manifes
         found=$(frames_in "$folder/v.part.mp4" 2>/dev/null)
         echo "noted $noted, found $found"
         [ "$found" -ge "$noted" ] || return 1
+        seen=$((seen + 1))
     done
+    [ "$seen" -ge 1 ] || return 1
     video --out "$folder/v.mp4" --continue >"$scratch/said" && only_the_video "$folder"
 }
 
@@ -75,7 +82,7 @@ interrupted_video() {
     "$bhr" render "$scratch/video.toml" --backend cpu --progress plain --keyframes 16 --out "$folder/v.mp4" \
         >/dev/null 2>"$scratch/said" &
     pid=$!
-    until grep -qs frames "$folder/v.manifest.jsonl"; do
+    until grep -qsE '"frames":[1-9]' "$folder/v.manifest.jsonl"; do
         sleep 0.05
     done
     kill "-$1" "$pid"
