@@ -1,28 +1,32 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `bhr join`: the tiles of a frame as one picture. Every pixel must be in a tile; where several have it they agree, as
-//! tiles are parts of one frame.
+//! `bhr join`: the tiles of a frame as one picture, with all layers. Every pixel must be in a tile; where several have
+//! it they agree, as tiles are parts of one frame.
 
 use crate::ending::Ending;
 use crate::manifest::{Fingerprint, Manifest};
 use crate::progress::say;
-use bhr::image::{Alpha, Effort, ImageRef, Layer, Layout, Loaded, PixelFormat, load, save, save_layers};
-use bhr::scene::{Output, Region};
+use bhr::image::{
+    Alpha, Channels, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load, load_channels, save, save_channels,
+};
+use bhr::scene::Region;
 use clap::ArgMatches;
-use half::f16;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The picture that is put together, in the channels of its file.
+/// The picture that is put together.
 enum Whole {
+    /// The pixels of a PNG.
     Bytes(Vec<u8>),
-    Halves(Vec<f16>),
+    /// All channels of an EXR file, with the attributes that every tile has.
+    Channels(Channels),
 }
 
 struct Joined {
     size: [u32; 2],
-    pixels: Whole,
-    /// Pixels of each row that are there.
-    there: Vec<bool>,
+    whole: Whole,
+    /// For each pixel, 1 where a tile has it.
+    there: Vec<u8>,
 }
 
 /// The manifests of folders, each read once.
@@ -56,89 +60,137 @@ impl Manifests {
 }
 
 impl Joined {
-    fn new(region: &Region, exr: bool) -> Result<Self, Ending> {
+    /// The whole that a first tile is a part of, all zeros.
+    fn new(region: &Region, first: &Tile) -> Result<Self, Ending> {
         let size = [region.full_width, region.full_height];
         let count = size[0] as usize * size[1] as usize;
-        let none = |_| {
-            bhr::error::Error::new(
-                bhr::error::ErrorKind::OutOfMemory,
-                format!("no memory for {} x {}", size[0], size[1]),
-            )
+        let whole = match first {
+            Tile::Bytes(_) => Whole::Bytes(zeros(4 * count)?),
+            Tile::Channels(first) => {
+                let mut list = Vec::with_capacity(first.list.len());
+                for (name, values) in &first.list {
+                    let values = match values {
+                        Values::Halves(_) => Values::Halves(zeros(count)?),
+                        Values::Floats(_) => Values::Floats(zeros(count)?),
+                    };
+                    list.push((name.clone(), values));
+                }
+                let attributes = first.attributes.clone();
+                Whole::Channels(Channels { width: size[0], height: size[1], list, attributes })
+            }
         };
-        let (mut bytes, mut halves, mut there) = (Vec::new(), Vec::new(), Vec::new());
-        there.try_reserve_exact(count).map_err(none)?;
-        there.resize(count, false);
-        let pixels = if exr {
-            halves.try_reserve_exact(4 * count).map_err(none)?;
-            halves.resize(4 * count, f16::ZERO);
-            Whole::Halves(halves)
-        } else {
-            bytes.try_reserve_exact(4 * count).map_err(none)?;
-            bytes.resize(4 * count, 0);
-            Whole::Bytes(bytes)
-        };
-        Ok(Self { size, pixels, there })
+        Ok(Self { size, whole, there: zeros(count)? })
     }
 
-    fn put(&mut self, tile: &Loaded, region: &Region, path: &Path) -> Result<(), Ending> {
+    fn put(&mut self, tile: &Tile, region: &Region, path: &Path) -> Result<(), Ending> {
+        let wrong = |what: &str| Err(Ending::data(format!("{}: {what}", path.display())));
         let [width, height] = self.size;
-        let fits = u64::from(region.x) + u64::from(tile.width) <= u64::from(width)
-            && u64::from(region.y) + u64::from(tile.height) <= u64::from(height);
+        let [tile_width, tile_height] = tile.size();
+        let fits = u64::from(region.x) + u64::from(tile_width) <= u64::from(width)
+            && u64::from(region.y) + u64::from(tile_height) <= u64::from(height);
         if !fits || [region.full_width, region.full_height] != self.size {
-            return Err(Ending::data(format!("{}: it is a tile of another frame", path.display())));
+            return wrong("it is a tile of another frame");
         }
-        let bytes = tile.pixels.as_bytes();
-        for row in 0..tile.height as usize {
+        // For each row: where its pixels go to in the whole, and where they are in the tile.
+        let rows = (0..tile_height as usize).map(|row| {
             let begin = (region.y as usize + row) * width as usize + region.x as usize;
-            let (from, count) = (row * tile.width as usize, tile.width as usize);
-            self.there[begin..begin + count].fill(true);
-            let (to, from) = (4 * begin..4 * (begin + count), 4 * from..4 * (from + count));
-            match (&mut self.pixels, tile.format) {
-                (Whole::Bytes(all), PixelFormat::Rgba8Srgb) => all[to].copy_from_slice(&bytes[from]),
-                (Whole::Halves(all), PixelFormat::Rgba32F) => {
-                    let floats: &[f32] = bytemuck::cast_slice(bytes);
-                    for (to, from) in all[to].iter_mut().zip(&floats[from]) {
-                        *to = f16::from_f32(*from);
-                        if to.is_infinite() && from.is_finite() {
-                            return Err(Ending::data(format!("{}: {from} does not fit into a half", path.display())));
-                        }
-                    }
-                }
-                _ => {
-                    let message = "its pixels are of another kind than --out";
-                    return Err(Ending::data(format!("{}: {message}", path.display())));
+            let (from, count) = (row * tile_width as usize, tile_width as usize);
+            (begin..begin + count, from..from + count)
+        });
+        for (to, _) in rows.clone() {
+            self.there[to].fill(1);
+        }
+        match (&mut self.whole, tile) {
+            (Whole::Bytes(all), Tile::Bytes(tile)) => {
+                let bytes = tile.pixels.as_bytes();
+                for (to, from) in rows {
+                    all[4 * to.start..4 * to.end].copy_from_slice(&bytes[4 * from.start..4 * from.end]);
                 }
             }
+            (Whole::Channels(all), Tile::Channels(tile)) => {
+                let same = all.list.iter().map(|(name, _)| name).eq(tile.list.iter().map(|(name, _)| name));
+                if !same {
+                    return wrong("it has other layers than the tiles before it");
+                }
+                all.attributes.retain(|of_all| tile.attributes.contains(of_all));
+                for ((_, all), (_, tile)) in all.list.iter_mut().zip(&tile.list) {
+                    match (all, tile) {
+                        (Values::Halves(all), Values::Halves(tile)) => copy_rows(all, tile, rows.clone()),
+                        (Values::Floats(all), Values::Floats(tile)) => copy_rows(all, tile, rows.clone()),
+                        _ => return wrong("its floats have another size than those of the tiles before it"),
+                    }
+                }
+            }
+            _ => return wrong("it is another kind of file than the tiles before it"),
         }
         Ok(())
     }
 
     fn save(&self, out: &Path) -> Result<(), Ending> {
-        if let Some(place) = self.there.iter().position(|there| !there) {
+        if let Some(place) = self.there.iter().position(|there| *there == 0) {
             let (x, y) = (place % self.size[0] as usize, place / self.size[0] as usize);
             return Err(Ending::data(format!("no tile has the pixel {x}, {y}")));
         }
         let [width, height] = self.size;
-        match &self.pixels {
+        match &self.whole {
             Whole::Bytes(bytes) => {
                 let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), bytes)?;
                 save(&image, Alpha::AsInFile, out)?;
             }
-            Whole::Halves(halves) => {
-                let layout = Layout::packed(PixelFormat::Rgba16F, width, height);
-                let image = ImageRef::new(layout, bytemuck::cast_slice(halves))?;
-                let channels = Output::of_view(bhr::scene::View::Light).channels();
-                save_layers(&[Layer { channels, image }], &[], Effort::default(), out)?;
-            }
+            Whole::Channels(all) => save_channels(all, Effort::default(), out)?,
         }
         Ok(())
     }
 }
 
+/// A tile as it was saved.
+enum Tile {
+    Bytes(Loaded),
+    Channels(Channels),
+}
+
+impl Tile {
+    fn load(path: &Path) -> Result<Self, Ending> {
+        if is_exr(path) {
+            return Ok(Self::Channels(load_channels(path)?));
+        }
+        let loaded = load(path)?;
+        match loaded.format {
+            PixelFormat::Rgba8Srgb => Ok(Self::Bytes(loaded)),
+            _ => Err(Ending::data(format!("{}: it is neither an EXR file nor an 8-bit PNG", path.display()))),
+        }
+    }
+
+    fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Bytes(loaded) => [loaded.width, loaded.height],
+            Self::Channels(channels) => [channels.width, channels.height],
+        }
+    }
+}
+
+/// Copies rows of a tile to their places in the whole.
+fn copy_rows<T: Copy>(all: &mut [T], tile: &[T], rows: impl Iterator<Item = (Range<usize>, Range<usize>)>) {
+    for (to, from) in rows {
+        all[to].copy_from_slice(&tile[from]);
+    }
+}
+
+/// Zeros, or the error for no memory.
+fn zeros<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>, Ending> {
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| {
+        let message = format!("no memory for {count} values");
+        bhr::error::Error::new(bhr::error::ErrorKind::OutOfMemory, message).into()
+    })
+}
+
+fn is_exr(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+}
+
 pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     let out = given.get_one::<PathBuf>("out").ok_or_else(|| Ending::usage("no --out"))?;
     let tiles = given.get_many::<PathBuf>("tiles").unwrap_or_default().collect::<Vec<_>>();
-    let exr = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
     let mut joined: Option<Joined> = None;
     let (mut manifests, mut first) = (Manifests::default(), None);
     for path in &tiles {
@@ -147,10 +199,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         if (of.frame, &of.scene) != (*frame, &*scene) {
             return Err(Ending::data(format!("{}: it is a tile of another frame", path.display())));
         }
-        let tile = load(path)?;
+        if is_exr(path) != is_exr(out) {
+            return Err(Ending::data(format!("{}: it is another kind of file than --out", path.display())));
+        }
+        let tile = Tile::load(path)?;
         let whole = match &mut joined {
             Some(whole) => whole,
-            None => joined.insert(Joined::new(&region, exr)?),
+            None => joined.insert(Joined::new(&region, &tile)?),
         };
         whole.put(&tile, &region, path)?;
     }

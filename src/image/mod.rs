@@ -7,5 +7,10 @@ pub mod memory;
 pub mod file;
 
 pub use copiers::Copiers;
-pub use file::{Alpha, Attribute, Effort, Layer, Loaded, Pixels, load, load_text, probe, save, save_layers, save_text};
+pub use file::{
+    Alpha, Attribute, Channels, Effort, Layer, Loaded, Pixels, Values, load, load_text, probe, save, save_layers,
+    save_text,
+};
+#[cfg(feature = "exr")]
+pub use file::{load_channels, save_channels};
 pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

@@ -42,13 +42,12 @@ const MAX_UNPACKED_BYTES: u64 = 1 << 30;
 const MAX_UNPACKED_TIMES: u64 = 4;
 /// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
 /// way.
-const BLOCKS_AT_A_TIME: u64 = 6;
+pub(super) const BLOCKS_AT_A_TIME: u64 = 6;
 
 /// Errors: IO; UNSUPPORTED for a compression that is not read; OUT_OF_MEMORY.
 pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     let in_headers = Cell::new(true);
-    let headed = HeaderLimiter { file, in_headers: &in_headers, taken: 0, probed: 0 };
-    let reader = block::read(headed, false).map_err(header_error)?;
+    let reader = block::read(HeaderLimiter::new(file, &in_headers), false).map_err(header_error)?;
     in_headers.set(false);
     check(reader.headers())?;
     let chosen = choose(reader.headers())?;
@@ -90,7 +89,7 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     })
 }
 
-fn header_error(error: ::exr::error::Error) -> Error {
+pub(super) fn header_error(error: ::exr::error::Error) -> Error {
     match error {
         ::exr::error::Error::Io(io) if io.kind() == io::ErrorKind::OutOfMemory => {
             Error::new(ErrorKind::OutOfMemory, "there is no memory for its headers")
@@ -114,12 +113,19 @@ fn to_rec709(header: &Header) -> Option<Matrix> {
 
 /// A file whose headers come first. Reading them fails past `MAX_HEADER_BYTES`, and where there is no memory for
 /// more.
-struct HeaderLimiter<'a, F> {
+pub(super) struct HeaderLimiter<'a, F> {
     file: F,
     in_headers: &'a Cell<bool>,
     /// Bytes of headers that were read, and that memory was found for.
     taken: u64,
     probed: u64,
+}
+
+impl<'a, F> HeaderLimiter<'a, F> {
+    /// A file whose headers are read while `in_headers` is true.
+    pub(super) fn new(file: F, in_headers: &'a Cell<bool>) -> Self {
+        Self { file, in_headers, taken: 0, probed: 0 }
+    }
 }
 
 impl<F: Read> Read for HeaderLimiter<'_, F> {
@@ -148,14 +154,14 @@ impl<F: Seek> Seek for HeaderLimiter<'_, F> {
 }
 
 /// Bytes of a whole block. Buffers have this size even where the picture is smaller than a tile. Saturates.
-fn block_bytes(header: &Header) -> u64 {
+pub(super) fn block_bytes(header: &Header) -> u64 {
     let Vec2(width, height) = header.max_block_pixel_size();
     let pixels = (width as u64).saturating_mul(height as u64);
     pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
 }
 
 /// Errors: IO where a part exceeds a limit.
-fn check(parts: &[Header]) -> Result<()> {
+pub(super) fn check(parts: &[Header]) -> Result<()> {
     for (i, part) in parts.iter().enumerate() {
         let Vec2(width, height) = part.layer_size;
         if width == 0 || height == 0 || width > MAX_SIDE as usize || height > MAX_SIDE as usize {

@@ -3,6 +3,7 @@
 //! no kind of file.
 
 use crate::image::memory::ImageRef;
+use half::f16;
 
 /// An image as layers of a file have it.
 pub struct Layer<'a> {
@@ -16,6 +17,22 @@ pub struct Layer<'a> {
 pub enum Attribute {
     Number(f64),
     Text(String),
+}
+
+/// One channel's values, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    Halves(Vec<f16>),
+    Floats(Vec<f32>),
+}
+
+/// A file's channels, sorted by name, byte by byte, and its attributes that are a number or a text, sorted by name.
+#[derive(Debug)]
+pub struct Channels {
+    pub width: u32,
+    pub height: u32,
+    pub list: Vec<(String, Values)>,
+    pub attributes: Vec<(String, Attribute)>,
 }
 
 /// The work that is done to make a file of layers small: a level of zlib, 1 .. 9.

@@ -12,6 +12,7 @@ use ::exr::math::Vec2;
 use ::exr::meta::attribute::{ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType};
 use ::exr::meta::header::{Header, ImageAttributes};
 use ::exr::meta::{BlockDescription, MetaData};
+use half::f16;
 use std::fs::{self, File};
 use std::path::Path;
 
@@ -183,4 +184,43 @@ fn files_are_saved_as_every_program_reads_them() {
         });
         assert_eq!(rows.collect::<Vec<_>>(), [0, 16, 32]);
     }
+}
+
+/// Layers of halves and floats come back as they are, with their attributes, and are saved as the same bytes again.
+#[test]
+fn all_channels_of_a_file_come_back() {
+    let folder = Folder::new("all-channels");
+    let (path, again) = (folder.file("a.exr"), folder.file("b.exr"));
+    let halves = (0..4 * 70 * 40).map(|i| f16::from_f32(i as f32 - 300.5)).collect::<Vec<_>>();
+    let floats = (0..70 * 40).map(|i| 1.0 / i as f32).collect::<Vec<_>>();
+    let light = Layout::packed(PixelFormat::Rgba16F, 70, 40);
+    let depth = Layout::packed(PixelFormat::R32F, 70, 40);
+    let layers = [
+        Layer {
+            channels: ["R", "G", "B", "A"].map(String::from).into(),
+            image: ImageRef::new(light, bytemuck::cast_slice(&halves)).unwrap(),
+        },
+        Layer { channels: vec!["depth.Z".into()], image: ImageRef::new(depth, bytemuck::cast_slice(&floats)).unwrap() },
+    ];
+    let attributes = vec![("a".into(), Attribute::Number(0.1)), ("b".into(), Attribute::Text("KERR".into()))];
+    save_layers(&layers, &attributes, Effort::default(), &path).unwrap();
+    let mut all = load_channels(&path).unwrap();
+    assert_eq!((all.width, all.height, &all.attributes), (70, 40, &attributes));
+    let names = all.list.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
+    assert_eq!(names, ["A", "B", "G", "R", "depth.Z"]);
+    let green = halves.iter().skip(1).step_by(4).copied().collect();
+    assert!(all.list[2].1 == Values::Halves(green) && all.list[4].1 == Values::Floats(floats));
+    save_channels(&all, Effort::default(), &again).unwrap();
+    assert!(fs::read(&path).unwrap() == fs::read(&again).unwrap());
+    // A file that lacks an end, and channels of another size.
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&again, &bytes[..bytes.len() - 9]).unwrap();
+    assert_eq!(load_channels(&again).unwrap_err().kind, ErrorKind::Io);
+    all.list[3].1 = Values::Floats(vec![0.0; 7]);
+    let error = save_channels(&all, Effort::default(), &path).unwrap_err();
+    assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("R has 7 values"), "{error}");
+    assert!(fs::read(&path).unwrap() == bytes);
+    // Two parts are two pictures.
+    write(&path, &[&[("R", [1.0; 2])], &[("G", [1.0; 2])]], None);
+    assert_eq!(load_channels(&path).unwrap_err().kind, ErrorKind::Unsupported);
 }

@@ -4,7 +4,7 @@
 //! time of exr's own deflate and makes them no larger. Knows no scenes.
 
 use super::colour::Primaries;
-use super::layer::{Attribute, Effort, Layer};
+use super::layer::{Attribute, Channels, Effort, Layer, Values};
 use super::ordered::Ordered;
 use super::support::{io_error, probe};
 use crate::error::{Error, Result};
@@ -26,14 +26,41 @@ use zlib_rs::{DeflateConfig, ReturnCode};
 /// One channel of the file: its name, and where its values are.
 struct Channel<'a> {
     name: &'a str,
-    image: &'a ImageRef<'a>,
-    /// Its number in the image's pixels.
-    index: usize,
+    values: Source<'a>,
 }
 
-impl Channel<'_> {
-    fn sample_type(&self) -> SampleType {
-        if self.image.format() == PixelFormat::Rgba16F { SampleType::F16 } else { SampleType::F32 }
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    /// The value of this number in each of the image's pixels.
+    Image(&'a ImageRef<'a>, usize),
+    /// Values of their own, in rows of so many.
+    Values(&'a Values, usize),
+}
+
+impl Source<'_> {
+    fn sample_type(self) -> SampleType {
+        match self {
+            Self::Image(image, _) if image.format() == PixelFormat::Rgba16F => SampleType::F16,
+            Self::Values(Values::Halves(_), _) => SampleType::F16,
+            Self::Image(..) | Self::Values(Values::Floats(_), _) => SampleType::F32,
+        }
+    }
+
+    /// The bytes from one value to the next, and the number of the value among those.
+    fn pixel(self) -> (usize, usize) {
+        match self {
+            Self::Image(image, index) => (image.format().bytes_per_pixel(), index),
+            Self::Values(..) => (self.sample_type().bytes_per_sample(), 0),
+        }
+    }
+
+    /// The pixels of a row.
+    fn row(&self, y: usize) -> &[u8] {
+        match self {
+            Self::Image(image, _) => image.row(y as u32),
+            Self::Values(Values::Halves(halves), width) => bytemuck::cast_slice(&halves[y * width..(y + 1) * width]),
+            Self::Values(Values::Floats(floats), width) => bytemuck::cast_slice(&floats[y * width..(y + 1) * width]),
+        }
     }
 }
 
@@ -48,9 +75,11 @@ pub(super) fn write(
     let named = |layer: &'_ Layer<'_>| layer.channels.len();
     let mut channels = Vec::with_capacity(layers.iter().map(named).sum());
     for Layer { channels: names, image } in layers {
-        channels.extend(names.iter().zip(0..).map(|(name, index)| Channel { name, image, index }));
+        let named = names.iter().zip(0..);
+        channels.extend(named.map(|(name, index)| Channel { name, values: Source::Image(image, index) }));
     }
-    write_channels(channels, attributes, effort, file)
+    let Some(Layer { image, .. }) = layers.first() else { return Ok(()) };
+    write_channels(Vec2(image.width() as usize, image.height() as usize), channels, attributes, effort, file)
 }
 
 /// Writes an image as R, G, B, and A where it has alpha; a single value becomes grey. Errors: IO; OUT_OF_MEMORY.
@@ -59,16 +88,31 @@ pub(super) fn write_image(image: &ImageRef<'_>, file: impl Write + Seek) -> Resu
         PixelFormat::R32F => &[("R", 0), ("G", 0), ("B", 0)],
         _ => &[("R", 0), ("G", 1), ("B", 2), ("A", 3)],
     };
-    write_channels(
-        channels.iter().map(|(name, index)| Channel { name, image, index: *index }).collect(),
-        &[],
-        Effort::default(),
-        file,
-    )
+    let channels = channels.iter().map(|(name, index)| Channel { name, values: Source::Image(image, *index) });
+    let size = Vec2(image.width() as usize, image.height() as usize);
+    write_channels(size, channels.collect(), &[], Effort::default(), file)
+}
+
+/// Writes channels as they were read. Errors: as [`write`]; INVALID_ARGUMENT for a channel with another number of
+/// values than the picture has pixels.
+pub(super) fn write_values(channels: &Channels, effort: Effort, file: impl Write + Seek) -> Result<()> {
+    let size = Vec2(channels.width as usize, channels.height as usize);
+    for (name, values) in &channels.list {
+        let count = match values {
+            Values::Halves(halves) => halves.len(),
+            Values::Floats(floats) => floats.len(),
+        };
+        if count != size.area() {
+            return Err(Error::argument(format!("channel {name} has {count} values for {} pixels", size.area())));
+        }
+    }
+    let list = channels.list.iter().map(|(name, values)| Channel { name, values: Source::Values(values, size.0) });
+    write_channels(size, list.collect(), &channels.attributes, effort, file)
 }
 
 /// Writes channels of images of one size. Errors: as [`write`].
 fn write_channels(
+    size: Vec2<usize>,
     mut channels: Vec<Channel<'_>>,
     attributes: &[(String, Attribute)],
     effort: Effort,
@@ -79,9 +123,7 @@ fn write_channels(
     if let Some([twice, _]) = channels.array_windows().find(|[a, b]| a.name == b.name) {
         return Err(Error::argument(format!("two outputs would both be the channel {}", twice.name)));
     }
-    let Some(first) = channels.first() else { return Ok(()) };
-    let size = Vec2(first.image.width() as usize, first.image.height() as usize);
-    let list = channels.iter().map(|c| ChannelDescription::new(c.name, c.sample_type(), false));
+    let list = channels.iter().map(|c| ChannelDescription::new(c.name, c.values.sample_type(), false));
     let other = attributes.iter().map(|(name, value)| {
         let value = match value {
             Attribute::Number(number) => AttributeValue::F64(*number),
@@ -98,7 +140,7 @@ fn write_channels(
         .with_attributes(own)
         .with_shared_attributes(shared);
     // The encoder holds a block's values, their bytes in another order, and what they are packed to.
-    let line = size.0 as u64 * channels.iter().map(|c| c.image.format().channel_bytes() as u64).sum::<u64>();
+    let line = size.0 as u64 * channels.iter().map(|c| c.values.sample_type().bytes_per_sample() as u64).sum::<u64>();
     probe(4 * Compression::ZIP16.scan_lines_per_block() as u64 * line)?;
     let written = block::write(Ordered::new(file), std::iter::once(header).collect(), true, |meta, chunks| {
         let mut space = Space::default();
@@ -161,20 +203,21 @@ fn text(words: &str) -> Text {
 /// ends first.
 fn split(channels: &[Channel<'_>], at: BlockIndex, apart: &mut Vec<u8>) {
     let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = at;
-    let line = width * channels.iter().map(|channel| channel.image.format().channel_bytes()).sum::<usize>();
+    let line = width * channels.iter().map(|c| c.values.sample_type().bytes_per_sample()).sum::<usize>();
     apart.resize(line * height, 0);
     let (mut even, mut odd) = apart.split_at_mut(line * height / 2);
     for y in top..top + height {
-        for Channel { image, index, .. } in channels {
-            let (pixel, value) = (image.format().bytes_per_pixel(), image.format().channel_bytes());
-            let row = &image.row(y as u32)[left * pixel..(left + width) * pixel];
+        for Channel { values, .. } in channels {
+            let ((pixel, index), value) = (values.pixel(), values.sample_type().bytes_per_sample());
+            let row = &values.row(y)[left * pixel..(left + width) * pixel];
             let half = width * value / 2;
             let (to_even, after_even) = even.split_at_mut(half);
             let (to_odd, after_odd) = odd.split_at_mut(half);
             (even, odd) = (after_even, after_odd);
             match (value, pixel) {
-                (2, 8) => gather::<2, 8>(row, *index, to_even, to_odd),
-                (4, 16) => gather::<4, 16>(row, *index, to_even, to_odd),
+                (2, 8) => gather::<2, 8>(row, index, to_even, to_odd),
+                (2, _) => gather::<2, 2>(row, 0, to_even, to_odd),
+                (4, 16) => gather::<4, 16>(row, index, to_even, to_odd),
                 // One value a pixel.
                 _ => gather::<4, 4>(row, 0, to_even, to_odd),
             }

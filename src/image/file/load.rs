@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Reading image files: the kind of a file, told by its first bytes, and the image that every kind becomes.
 
+#[cfg(feature = "exr")]
+use super::layer::Channels;
 use super::loaded::Loaded;
 use super::support::{about, io_error, on_own_thread};
 use super::{pam, png, pnm};
@@ -19,6 +21,14 @@ use std::path::Path;
 /// for its compressions DWA and HTJ2K, and for colours of a PNG that are not known; OUT_OF_MEMORY.
 pub fn load(path: &Path) -> Result<Loaded> {
     let read = || on_own_thread(|| decode(open(path)?));
+    read().map_err(|error| about("read", path, &error))
+}
+
+/// Reads all channels of an EXR file of one part in scan lines, as bhr writes them, and its attributes. Errors: as of
+/// [`load`]; UNSUPPORTED for EXR files of other kinds.
+#[cfg(feature = "exr")]
+pub fn load_channels(path: &Path) -> Result<Channels> {
+    let read = || on_own_thread(|| super::exr_values::read(open(path)?));
     read().map_err(|error| about("read", path, &error))
 }
 

@@ -18,6 +18,8 @@ mod replace;
 mod exr_channels;
 #[cfg(feature = "exr")]
 mod exr;
+#[cfg(feature = "exr")]
+mod exr_values;
 mod pam;
 mod png_colours;
 mod png;
@@ -31,8 +33,12 @@ mod colour_tests;
 #[cfg(all(test, feature = "exr"))]
 mod layer_tests;
 
-pub use layer::{Alpha, Attribute, Effort, Layer};
+pub use layer::{Alpha, Attribute, Channels, Effort, Layer, Values};
+#[cfg(feature = "exr")]
+pub use load::load_channels;
 pub use load::{decode_png, load, load_text};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
+#[cfg(feature = "exr")]
+pub use save::save_channels;
 pub use save::{save, save_layers, save_text};
 pub use support::probe;

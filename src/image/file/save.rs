@@ -90,6 +90,21 @@ pub fn save_layers(
     on_own_thread(write).map_err(|error| about("write", path, &error))
 }
 
+/// Writes channels as [`super::load_channels`] reads them to one `.exr` file, which appears as in [`save`]. Errors:
+/// INVALID_ARGUMENT for two channels of one name, or one with another number of values than there are pixels; IO;
+/// OUT_OF_MEMORY.
+#[cfg(feature = "exr")]
+pub fn save_channels(channels: &super::layer::Channels, effort: Effort, path: &Path) -> Result<()> {
+    let write = || {
+        replace::with(path, |file| {
+            let mut file = BufWriter::new(file);
+            super::layers::write_values(channels, effort, &mut file)?;
+            file.into_inner().map_err(super::support::io_error)
+        })
+    };
+    on_own_thread(write).map_err(|error| about("write", path, &error))
+}
+
 #[cfg(feature = "exr")]
 fn encode_layers(
     layers: &[Layer<'_>],
