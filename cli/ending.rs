@@ -10,6 +10,8 @@ use std::path::Path;
 #[derive(Debug)]
 pub struct Ending {
     pub status: u8,
+    /// Memory was lacking, of the machine or of its GPU.
+    pub no_memory: bool,
     message: String,
 }
 
@@ -22,7 +24,7 @@ impl Ending {
     const TRY_AGAIN: u8 = 75;
 
     fn new(status: u8, message: impl Into<String>) -> Self {
-        Self { status, message: message.into() }
+        Self { status, no_memory: false, message: message.into() }
     }
 
     pub fn usage(message: impl Into<String>) -> Self {
@@ -60,6 +62,6 @@ impl From<Error> for Ending {
             | ErrorKind::Cancelled => Self::TRY_AGAIN,
             ErrorKind::IncompatibleAbi | ErrorKind::Internal => Self::SOFTWARE,
         };
-        Self::new(status, error.message)
+        Self { no_memory: error.kind == ErrorKind::OutOfMemory, ..Self::new(status, error.message) }
     }
 }

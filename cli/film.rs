@@ -3,7 +3,7 @@
 //! with it. Knows no codec.
 
 use crate::claim::Claim;
-use crate::encode::{Done, Encoders, Frame};
+use crate::encode::{Done, Encoders, Frame, Pixels};
 use crate::ending::Ending;
 use crate::frames::Names;
 use crate::manifest::{Fingerprint, Made, Manifest};
@@ -92,11 +92,11 @@ impl Film<'_> {
         let writer = Arc::new(Mutex::new(writer));
         // One thread gives ffmpeg its frames, in their order; the threads that encode are ffmpeg's.
         let (_, bytes) = self.order.places()?;
-        let mut encoders = Encoders::new(1, left.len() + 1, bytes)?;
+        let encoders = Encoders::new(1, 1, left.len() + 1, bytes)?;
         let over = AtomicBool::new(false);
         std::thread::scope(|scope| {
             scope.spawn(|| watch(&running, self.signals, &over));
-            let ended = self.render_all(left, of, &writer, &mut encoders, renderer, progress);
+            let ended = self.render_all(left, of, &writer, &encoders, renderer, progress);
             let ended = progress.finish(encoders, ended);
             // After a signal, or where the scene has a mistake, pieces may be left that have got all of their frames.
             if ended.is_err()
@@ -152,7 +152,7 @@ impl Film<'_> {
         list: &[u32],
         of: Fingerprint,
         writer: &Arc<Mutex<Writer>>,
-        encoders: &mut Encoders,
+        encoders: &Encoders,
         renderer: &mut Renderer,
         progress: &Progress,
     ) -> Result<(), Ending> {
@@ -182,6 +182,6 @@ impl Film<'_> {
         };
         let (writer, signals) = (writer.clone(), self.signals.clone());
         let end = move |_: &[u32]| lock(&writer).end(&made, &signals);
-        encoders.order(Frame { pixels: Vec::new(), write: Box::new(end) })
+        encoders.order(Frame { pixels: Pixels::default(), write: Box::new(end) })
     }
 }

@@ -6,7 +6,8 @@ use crate::ending::Ending;
 use crate::manifest::{Fingerprint, Manifest};
 use crate::progress::say;
 use bhr::image::{
-    Alpha, Channels, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load, load_channels, save, save_channels,
+    Alpha, Attribute, Channels, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load, load_channels, save,
+    save_channels,
 };
 use bhr::scene::Region;
 use clap::ArgMatches;
@@ -14,11 +15,14 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+/// The attributes that say where a tile is in its frame. The whole frame's are 0.
+const PLACE: [&str; 2] = ["bhr.region.x", "bhr.region.y"];
+
 /// The picture that is put together.
 enum Whole {
     /// The pixels of a PNG.
     Bytes(Vec<u8>),
-    /// All channels of an EXR file, with the attributes that every tile has.
+    /// All channels of an EXR file, with the attributes that every tile has, and those of [`PLACE`].
     Channels(Channels),
 }
 
@@ -75,7 +79,12 @@ impl Joined {
                     };
                     list.push((name.clone(), values));
                 }
-                let attributes = first.attributes.clone();
+                let mut attributes = first.attributes.clone();
+                for (name, value) in &mut attributes {
+                    if PLACE.contains(&name.as_str()) {
+                        *value = Attribute::Number(0.0);
+                    }
+                }
                 Whole::Channels(Channels { width: size[0], height: size[1], list, attributes })
             }
         };
@@ -112,7 +121,10 @@ impl Joined {
                 if !same {
                     return wrong("it has other layers than the tiles before it");
                 }
-                all.attributes.retain(|of_all| tile.attributes.contains(of_all));
+                let shared = |of_all: &(String, Attribute)| {
+                    PLACE.contains(&of_all.0.as_str()) || tile.attributes.contains(of_all)
+                };
+                all.attributes.retain(shared);
                 for ((_, all), (_, tile)) in all.list.iter_mut().zip(&tile.list) {
                     match (all, tile) {
                         (Values::Halves(all), Values::Halves(tile)) => copy_rows(all, tile, rows.clone()),

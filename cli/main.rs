@@ -97,6 +97,10 @@ fn command() -> Command {
                 .value_parser(value_parser!(u32).range(0..=MOST_ENCODERS)),
         )
         .arg(
+            option("at-a-time", "N", "Frames that each adapter works at, to 8; default 2, of a processor 1")
+                .value_parser(value_parser!(u32).range(1..=8)),
+        )
+        .arg(
             option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 4")
                 .value_parser(value_parser!(i32).range(1..=9)),
         )

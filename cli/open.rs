@@ -80,8 +80,17 @@ pub fn renderer(given: &ArgMatches) -> Result<Renderer, Ending> {
 
 /// The renderers that arguments ask for, one at least.
 pub fn renderers(given: &ArgMatches) -> Result<Vec<Renderer>, Ending> {
+    let backend = backend(given)?;
+    adapter_indices(given, backend)?.into_iter().map(|index| Ok(open(backend, index)?)).collect()
+}
+
+fn open(backend: Option<Backend>, adapter_index: Option<u32>) -> bhr::error::Result<Renderer> {
+    Renderer::new(RendererOptions { backend, adapter_index, ..RendererOptions::default() })
+}
+
+fn backend(given: &ArgMatches) -> Result<Option<Backend>, Ending> {
     let name = given.get_one::<String>("backend").map_or("auto", String::as_str);
-    let backend = match name {
+    Ok(match name {
         "auto" => None,
         "cpu" => Some(Backend::Cpu),
         "vulkan" => Some(Backend::Vulkan),
@@ -91,10 +100,36 @@ pub fn renderers(given: &ArgMatches) -> Result<Vec<Renderer>, Ending> {
         _ => {
             return Err(Ending::usage(format!("--backend {name}: it must be auto, cpu, vulkan, metal, d3d12 or gl")));
         }
-    };
-    let open =
-        |adapter_index| Ok(Renderer::new(RendererOptions { backend, adapter_index, ..RendererOptions::default() })?);
-    adapter_indices(given, backend)?.into_iter().map(open).collect()
+    })
+}
+
+/// Opens one more renderer, if it can be had.
+pub type Opener = Box<dyn FnOnce() -> Option<Renderer> + Send>;
+
+/// The frames that a GPU works at a time, and those of a processor, whose cores one frame takes all.
+const AT_A_TIME: [usize; 2] = [2, 1];
+/// Films of fewer frames are done before one more renderer is opened.
+const WORTH_ANOTHER: usize = 8;
+
+/// Openers of more renderers beside each of those that [`renderers`] gives, by its number, on the adapter that it has.
+pub fn more_renderers(given: &ArgMatches, frames: usize) -> Result<impl Fn(usize, &Renderer) -> Vec<Opener>, Ending> {
+    let (asked, backend) = (given.get_one::<u32>("at-a-time").copied(), backend(given)?);
+    let indices = adapter_indices(given, backend)?;
+    Ok(move |number: usize, beside: &Renderer| {
+        let [gpu, software] = AT_A_TIME;
+        let count = match asked {
+            Some(asked) => asked as usize,
+            None if frames < WORTH_ANOTHER => 1,
+            None if beside.adapter().software => software,
+            None => gpu,
+        };
+        let index = indices.get(number).copied().flatten();
+        let open_one = |_| -> Opener {
+            let adapter = beside.adapter().clone();
+            Box::new(move || open(backend, index).ok().filter(|renderer| *renderer.adapter() == adapter))
+        };
+        (1..count).map(open_one).collect()
+    })
 }
 
 /// How often a device that was lost is opened anew.

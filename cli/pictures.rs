@@ -8,6 +8,7 @@ use crate::encode::{Done, Encoders, Frame, Written};
 use crate::ending::Ending;
 use crate::frames::Names;
 use crate::manifest::{Made, Manifest};
+use crate::open::Opener;
 use crate::order::{Order, Place};
 use crate::progress::Progress;
 use crate::signals::Signals;
@@ -34,10 +35,35 @@ pub struct Pictures<'a> {
     pub failed: AtomicBool,
 }
 
-/// The frames that no renderer has taken.
-type Left = Mutex<VecDeque<u32>>;
+/// The frames that no renderer has taken, and the renderers that take them.
+struct Left {
+    frames: VecDeque<u32>,
+    at_work: usize,
+}
 
-fn lock(left: &Left) -> MutexGuard<'_, VecDeque<u32>> {
+impl Left {
+    /// The next frame, if there is one. A renderer that is told that there is none has ended, unless it `waits` for
+    /// frames that others are making.
+    fn take(&mut self, waits: bool) -> Option<u32> {
+        let frame = self.frames.pop_front();
+        if frame.is_none() && !waits {
+            self.at_work -= 1;
+        }
+        frame
+    }
+
+    /// Leaves a frame to the renderers beside this one, which then ends; not if it is the last one at work.
+    fn leave(&mut self, frame: u32) -> bool {
+        let others = self.at_work > 1;
+        if others {
+            self.at_work -= 1;
+            self.frames.push_front(frame);
+        }
+        others
+    }
+}
+
+fn lock(left: &Mutex<Left>) -> MutexGuard<'_, Left> {
     left.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -54,49 +80,55 @@ struct Picture {
 
 impl Pictures<'_> {
     /// Renders frames by several renderers, which share the list as programs would; on as many threads as `encoders`
-    /// they are written. Errors: the first mistake; frames that were rendered before it are written.
+    /// they are written. Beside each renderer works what `more` opens, if it does: while a frame is copied from the GPU
+    /// the next one is rendered. Errors: the first mistake; frames that were rendered before it are written.
     pub fn render(
         &self,
         list: &[u32],
         encoders: usize,
-        renderers: &mut [Renderer],
+        renderers: Vec<Renderer>,
+        more: impl Fn(usize, &Renderer) -> Vec<Opener>,
         progress: &Progress,
     ) -> Result<(), Ending> {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let encoders = (if encoders == 0 { cores } else { encoders }).div_ceil(renderers.len().max(1));
-        let left = &Mutex::new(list.iter().copied().collect::<VecDeque<_>>());
-        std::thread::scope(|scope| {
-            let threads = renderers.iter_mut().map(|renderer| {
+        let (_, bytes) = self.order.places()?;
+        let more = renderers.iter().enumerate().map(|(number, renderer)| more(number, renderer)).collect::<Vec<_>>();
+        let count = renderers.len() + more.iter().map(Vec::len).sum::<usize>();
+        let encoders = Encoders::new(encoders, count, list.len(), bytes)?;
+        let left = &Mutex::new(Left { frames: list.iter().copied().collect(), at_work: renderers.len() });
+        let render = |renderer: Renderer| {
+            let result = self.render_by(renderer, left, &encoders, progress);
+            self.failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            result
+        };
+        let render = &render;
+        let ended = std::thread::scope(|scope| {
+            let first = renderers.into_iter().map(|renderer| scope.spawn(move || render(renderer)));
+            let mut threads = first.collect::<Vec<_>>();
+            threads.extend(more.into_iter().flatten().map(|open| {
                 scope.spawn(move || {
-                    let result = self.render_by(renderer, left, encoders, progress);
-                    self.failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                    result
+                    // One more helps, and is not needed: the machine may have no room for it.
+                    let Some(renderer) = open() else { return Ok(()) };
+                    {
+                        let mut left = lock(left);
+                        if left.at_work == 0 {
+                            return Ok(());
+                        }
+                        left.at_work += 1;
+                    }
+                    render(renderer)
                 })
-            });
-            let threads = threads.collect::<Vec<_>>();
+            }));
             let ended = threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
             ended.fold(Ok(()), Result::and)
-        })
+        });
+        progress.finish(encoders, ended)
     }
 
     fn render_by(
         &self,
-        renderer: &mut Renderer,
-        left: &Left,
-        encoders: usize,
-        progress: &Progress,
-    ) -> Result<(), Ending> {
-        let (_, bytes) = self.order.places()?;
-        let mut encoders = Encoders::new(encoders, lock(left).len(), bytes)?;
-        let ended = self.render_all(left, &mut encoders, renderer, progress);
-        progress.finish(encoders, ended)
-    }
-
-    fn render_all(
-        &self,
-        left: &Left,
-        encoders: &mut Encoders,
-        renderer: &mut Renderer,
+        mut renderer: Renderer,
+        left: &Mutex<Left>,
+        encoders: &Encoders,
         progress: &Progress,
     ) -> Result<(), Ending> {
         let mut lost = 0;
@@ -111,14 +143,15 @@ impl Pictures<'_> {
             for written in encoders.written() {
                 progress.frames(&written?);
             }
-            let Some(frame) = lock(left).pop_front() else {
+            let taken = lock(left).take(!others.is_empty());
+            let Some(frame) = taken else {
                 if others.is_empty() {
                     return Ok(());
                 }
                 // They are there in a while, or their programs are gone.
                 std::thread::sleep(PATIENCE);
                 manifest.refresh();
-                lock(left).extend(others.drain(..));
+                lock(left).frames.extend(others.drain(..));
                 continue;
             };
             let file = self.names.of(frame);
@@ -136,8 +169,15 @@ impl Pictures<'_> {
                 progress.frame(&Done { frame, file, seconds: None });
                 continue;
             }
-            let made = self.frame(frame, file, claim, encoders, renderer, &mut lost)?;
-            encoders.order(made)?;
+            match self.frame(frame, file, claim, encoders, &mut renderer, &mut lost) {
+                Ok(made) => encoders.order(made)?,
+                // The others go on with the memory that this one has taken.
+                Err(ending) if ending.no_memory && lock(left).leave(frame) => {
+                    lock(left).frames.extend(others);
+                    return Ok(());
+                }
+                Err(ending) => return Err(ending),
+            }
         }
     }
 
@@ -160,7 +200,7 @@ impl Pictures<'_> {
         frame: u32,
         file: PathBuf,
         claim: Claim,
-        encoders: &mut Encoders,
+        encoders: &Encoders,
         renderer: &mut Renderer,
         lost: &mut u32,
     ) -> Result<Frame, Ending> {
@@ -210,5 +250,22 @@ impl Picture {
         }
         made.note(&self.manifest)?;
         Ok(vec![Done { frame: made.of.frame, file: made.file.clone(), seconds: Some(made.seconds) }])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_left_to_others_only() {
+        let mut left = Left { frames: [1, 2].into(), at_work: 2 };
+        assert_eq!(left.take(false), Some(1));
+        assert!(left.leave(1) && left.at_work == 1 && left.frames == [1, 2]);
+        assert_eq!(left.take(false), Some(1));
+        assert!(!left.leave(1) && left.at_work == 1 && left.frames == [2]);
+        // One that waits for frames of other programs is still at work.
+        assert_eq!((left.take(true), left.take(true), left.at_work), (Some(2), None, 1));
+        assert_eq!((left.take(false), left.at_work), (None, 0));
     }
 }

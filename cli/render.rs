@@ -55,7 +55,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
             let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
             let failed = AtomicBool::new(false);
             let pictures = Pictures { order: &order, names: &names, again, effort, signals, failed };
-            pictures.render(&list, encoders, &mut renderers, &progress)
+            let more = open::more_renderers(given, list.len())?;
+            pictures.render(&list, encoders, renderers, more, &progress)
         }
     };
     progress.end();
@@ -65,10 +66,10 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
 /// Errors: options of pictures for a video, or the other way round.
 fn check_use(given: &ArgMatches, video: bool) -> Result<(), Ending> {
     let (names, of) = match video {
-        true => (["encoders", "compression"], "pictures"),
-        false => (["keyframes", "ffmpeg"], "videos, .mp4 or .mov"),
+        true => (&["encoders", "compression", "at-a-time"][..], "pictures"),
+        false => (&["keyframes", "ffmpeg"][..], "videos, .mp4 or .mov"),
     };
-    match names.into_iter().find(|name| given.contains_id(name)) {
+    match names.iter().find(|name| given.contains_id(name)) {
         Some(name) => Err(Ending::usage(format!("--{name}: it is for {of}"))),
         None => Ok(()),
     }
