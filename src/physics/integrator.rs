@@ -4,6 +4,7 @@
 //! only through `geodesic`. Mirrored by `shaders/geodesic/integrator.wgsl`.
 
 use super::geodesic::{Clock, Constants, State};
+use super::quadrature::gauss_legendre;
 use glam::DVec3;
 
 /// A one-step method.
@@ -101,12 +102,6 @@ fn rain_delay_step(c: &Constants, from: &State, to: &State, h: f64) -> f64 {
         let (u, du) = dense.at(x);
         c.delay_rate(u, du, 0.0)
     })
-}
-
-/// The integral of `f` over [0, 1]: Gauss-Legendre with three points, exact to the fifth degree.
-pub(super) fn gauss_legendre(f: impl Fn(f64) -> f64) -> f64 {
-    let offset = 0.6_f64.sqrt() / 2.0;
-    (5.0 * f(0.5 - offset) + 8.0 * f(0.5) + 5.0 * f(0.5 + offset)) / 18.0
 }
 
 /// u, u', N, N', drag, delay as one vector, for the methods that treat the system as of first order.

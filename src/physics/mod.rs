@@ -10,6 +10,7 @@ pub mod limb_darkening;
 pub mod orbit;
 pub mod blackbody;
 pub mod disk_flux;
+pub mod quadrature;
 pub mod geodesic;
 pub mod metric;
 pub mod flow;
