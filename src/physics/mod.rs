@@ -11,6 +11,7 @@ pub mod orbit;
 pub mod blackbody;
 pub mod disk_flux;
 pub mod quadrature;
+pub mod rain;
 pub mod geodesic;
 pub mod metric;
 pub mod flow;
