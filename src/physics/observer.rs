@@ -21,7 +21,7 @@
 //! sin d = -sqrt(2 r) a s / (rho Q),   cos d = sqrt(r^2 + a^2) / Q,   Q = sqrt(g_phph) / s
 //! ```
 
-use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State};
+use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State, turned};
 use super::orbit::{circular_orbit, horizon_inner, horizon_outer, innermost_radius, zamo_omega};
 use crate::error::{Error, Number, Result};
 use glam::DVec3;
@@ -184,7 +184,12 @@ impl LocalFrame {
                 Number(a)
             )));
         }
-        Ok(Self { a, rain: true, lapse: f64::NAN, ..place })
+        Ok(place.to_rain_of(a))
+    }
+
+    /// The rain frame of a hole of spin `a` at this place, of which the axes are the same at every spin.
+    pub(crate) fn to_rain_of(self, a: f64) -> Self {
+        Self { a, rain: true, lapse: f64::NAN, ..self }
     }
 
     /// sqrt(Sigma Delta / A), the ZAMO's lapse; NaN at or inside the horizon.
@@ -371,6 +376,24 @@ impl LocalFrame {
             du: t.q * (t.rho * radial - t.w * p.energy) + aus * t.w * around,
             advanced_rate: (p.energy + (t.rho * radial - aus * around) / t.q) / (1.0 + t.w / t.q),
         }
+    }
+
+    /// The momentum in the rain frame of what is here in the state `there`, whose chart is the frame's: what
+    /// `doran_momentum` is of it. p^r = (w x + u' / (q (1 + w / q))) r / rho has no difference that vanishes at a
+    /// horizon.
+    pub(crate) fn momentum(&self, c: &Constants, there: &State) -> Momentum {
+        let t = self.rain_triad();
+        let motion = -turned(there.dn, there.drag);
+        let (polar, around) = (self.e_theta.dot(motion), self.e_phi.dot(motion));
+        let radial = (t.w * c.advanced_rate(there.u, there.du) + there.du / (t.q + t.w)) / t.rho;
+        let aus = self.a * t.u * self.sin;
+        let azimuthal = (around * t.u + radial * t.w * aus / t.rho) / t.q;
+        let space = DVec3::new(
+            t.cos_turn * radial - t.sin_turn * azimuthal,
+            polar * t.u / t.rho,
+            around * t.u / t.circumference,
+        );
+        Momentum { energy: c.energy + t.w / t.rho * radial, space, mu2: c.mu2 }
     }
 }
 

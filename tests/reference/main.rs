@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `physics` alone against the reference values in tests/golden that need no tracer of pictures: shadows, redshifts,
-//! Kerr radii, Bardeen's curve, Luminet's isoradials and the Page-Thorne flux; to 1e-9 relative, flux to 1e-11. In a
-//! file of its own: the inside of spinning holes. Files are found from the package's root, where cargo runs tests.
+//! Kerr radii, Bardeen's curve, Luminet's isoradials and the Page-Thorne flux; to 1e-9 relative, flux to 1e-11. In
+//! files of their own: the inside of spinning holes, and bodies. Files are found from the package's root, where cargo
+//! runs tests.
 
+mod bodies;
 mod inside;
 #[path = "../random/mod.rs"]
 mod random;
