@@ -192,6 +192,12 @@ impl LocalFrame {
         Self { a, rain: true, lapse: f64::NAN, ..self }
     }
 
+    /// This frame at the place that is turned about the hole's axis by `angle`. On the axis, too, its axes turn.
+    pub(crate) fn turned(self, angle: f64) -> Self {
+        let [e_r, e_theta, e_phi] = [self.e_r, self.e_theta, self.e_phi].map(|axis| turned(axis, angle));
+        Self { e_r, e_theta, e_phi, ..self }
+    }
+
     /// sqrt(Sigma Delta / A), the ZAMO's lapse; NaN at or inside the horizon.
     fn zamo_lapse(&self) -> f64 {
         let (a, r) = (self.a, self.r);

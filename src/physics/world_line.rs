@@ -159,12 +159,12 @@ impl Line {
             let (r, time) = (Number(place.r), Number(body.time));
             return Err(Error::argument(format!("a body at r = {r} M and time {time} M: r is at most {LONGEST:e} M")));
         }
-        if body.velocity.is_nan() || body.velocity.length_squared() >= 1.0 || !axes.iter().all(|axis| axis.is_finite())
-        {
+        if body.velocity.is_nan() || body.velocity.length_squared() >= 1.0 {
             let v = Number(body.velocity.length());
-            return Err(Error::argument(format!(
-                "a body of velocity {v}, or its axes: below 1 and finite they must be"
-            )));
+            return Err(Error::argument(format!("a body's velocity is {v}; it must be below 1, that of light")));
+        }
+        if let Some(axis) = axes.iter().find(|axis| !axis.is_finite()) {
+            return Err(Error::argument(format!("{axis} is no axis: it must be finite")));
         }
         if place.r <= LEAST_RADIUS {
             return Err(refused("at or within", place.r, LEAST_RADIUS, a));
@@ -174,8 +174,7 @@ impl Line {
             return Err(refused("at or within r+ (1 + 1e-6) =", place.r, r_plus * (1.0 + BESIDE), a));
         }
         let offsets = if is_static { offsets(a, 1.0 / place.r) } else { NO_OFFSETS };
-        // Azimuth 0 on the axis is one of either chart: there is nothing to turn.
-        let frame = LocalFrame::rain(a, turned(body.position, offsets.azimuth))?;
+        let frame = place.turned(offsets.azimuth);
         let momentum = Momentum::of_body(body.velocity);
         let (velocity, gamma) = (body.velocity, momentum.energy);
         let to_rain = |components: DVec4| match frame.static_lapse().filter(|_| is_static) {
@@ -232,14 +231,15 @@ impl Line {
     /// A point as the host sees it.
     fn event(&self, point: &Point, end: Option<End>) -> Result<Event> {
         let (c, s) = (&self.c, &point.state);
-        let place = s.chart_direction() / s.u;
+        let is_static = self.clock == Clock::Coordinate;
+        let there = if is_static { offsets(c.a, s.u) } else { NO_OFFSETS };
+        let position = turned(s.chart_direction() / s.u, -there.azimuth);
         // Lines end where frames do, or a rounding farther in: without spin there is one at every place.
-        let Ok(frame) = LocalFrame::new(0.0, place).map(|frame| frame.to_rain_of(c.a)) else {
+        let Ok(frame) = LocalFrame::new(0.0, position).map(|frame| frame.to_rain_of(c.a).turned(there.azimuth)) else {
             return Err(Error::internal("a world line has left all places"));
         };
         let tetrad = Tetrad::new(&frame, s.drag);
         let momentum = frame.momentum(c, s);
-        let is_static = self.clock == Clock::Coordinate;
         let own = |components: DVec4| match frame.static_lapse().filter(|_| is_static) {
             Some(lapse) => {
                 let (motion, gamma) = rain_motion(lapse);
@@ -247,14 +247,13 @@ impl Line {
             }
             None => components,
         };
-        let there = if is_static { offsets(c.a, s.u) } else { NO_OFFSETS };
         let seen = own(momentum.space.extend(momentum.energy));
         let velocity = seen.truncate() / seen.w;
         // Beside a horizon that bodies do not pass a speed may round to 1.
         let velocity = velocity.clamp_length_max(1.0 - 4.0 * f64::EPSILON);
         let axes = point.axes.map(|axis| boosted(own(tetrad.components(axis)), velocity, seen.w).truncate());
         let time = self.time - s.delay - (there.time - self.offsets.time);
-        let body = Body { clock: self.clock, position: turned(place, -there.azimuth), velocity, time };
+        let body = Body { clock: self.clock, position, velocity, time };
         Ok(Event { body, axes, proper_time: point.proper, end })
     }
 }

@@ -338,6 +338,21 @@ fn both_charts_tell_the_same_line() {
     assert!(worst < 1e-11);
 }
 
+/// On the axis the triad is that of azimuth 0 in the body's own chart: next to it nothing is much different.
+#[test]
+fn the_axis_is_no_place_on_the_way() {
+    for clock in [Clock::Coordinate, Clock::Rain] {
+        let [on, beside] = [0.0, 1e-8].map(|theta| {
+            let start = body(clock, place(3.0, theta, 0.0), DVec3::new(0.1, 0.5, 0.2));
+            after(0.9, &start, 4.0)
+        });
+        assert!(size(difference(numbers(&on), numbers(&beside))) < 1e-6, "{on:?} {beside:?}");
+        for (x, y) in on.axes.iter().zip(beside.axes) {
+            assert!((*x - y).length() < 1e-6, "{on:?} {beside:?}");
+        }
+    }
+}
+
 /// r = (9 / 2 (tau_end - tau)^2)^(1/3) of a rain observer without spin, whose clock is proper time, down to the centre.
 #[test]
 fn rain_observers_fall_as_in_the_textbook() {
@@ -361,8 +376,8 @@ fn bad_bodies_are_refused_with_their_values() {
     let refusal = |a: f64, body: &Body, time: f64| world_line(a, body, &AXES, &[time]).unwrap_err().message;
     for (a, body, time, says) in [
         (1.5, good, 1.0, "spin of 1.5"),
-        (0.5, Body { velocity: DVec3::X, ..good }, 1.0, "velocity 1"),
-        (0.5, Body { velocity: DVec3::NAN, ..good }, 1.0, "velocity NaN"),
+        (0.5, Body { velocity: DVec3::X, ..good }, 1.0, "velocity is 1;"),
+        (0.5, Body { velocity: DVec3::NAN, ..good }, 1.0, "velocity is NaN"),
         (0.5, Body { time: f64::INFINITY, ..good }, 1.0, "time inf"),
         (0.5, Body { position: DVec3::X * 1e13, ..good }, 1.0, "at most 1e12 M"),
         (0.5, Body { position: DVec3::X * 0.05, ..good }, 1.0, "r- (1 + 1e-6)"),
