@@ -219,8 +219,9 @@ fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
 /// Outside, beside the horizon (u > 0.3 u+): k (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+:
 /// drag and delay diverge there. k = 1.2 `h`, `h` being the step in sigma: rays that start or pass there lose no
 /// accuracy; but at most 0.35, and not below 0.03, which gives 1e-10. For what leaves by rain time nothing diverges
-/// there: no limit without spin, and `relative_limit` with 1.5 `h` with it. Inside: `relative_limit`, as u is large,
-/// and where W < 0 the limit above from the nearer horizon, because there x diverges at both.
+/// there: `advance_limit` with 1.5 `h`, and with spin `relative_limit` with as much. Inside: `relative_limit`, as u is
+/// large, and `advance_limit`, or, where W < 0, the limit above from the nearer horizon, because there x diverges at
+/// both.
 #[inline]
 pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     let u_plus = 1.0 / c.r_plus;
