@@ -3,6 +3,7 @@
 //! and the share of the light from behind that it lets through. Knows no kind of matter.
 
 use super::glow::Coefficients;
+use crate::physics::quadrature::{GAUSS_BEFORE, GAUSS_WEIGHTS};
 use crate::physics::trace::CROSSINGS_KEPT;
 use arrayvec::ArrayVec;
 
@@ -68,17 +69,6 @@ pub(crate) fn own_share(t: f64) -> f64 {
 /// The stretch whose optical depth is larger is summed in layers.
 pub(crate) const THICK: f64 = 2.0;
 
-/// Nodes and weights of Gauss-Legendre quadrature over [0, 1] with three points.
-pub(crate) const GAUSS_NODES: [f64; 3] = [0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7];
-pub(crate) const GAUSS_WEIGHTS: [f64; 3] = [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0];
-
-/// The integrals from 0 to each node of the polynomials that are 1 at one node and 0 at the others.
-pub(crate) const GAUSS_BEFORE: [[f64; 3]; 3] = [
-    [5.0 / 36.0, -0.035_976_667_524_938_92, 0.009_789_444_015_308_325],
-    [0.300_263_194_980_864_6, 2.0 / 9.0, -0.022_485_417_203_086_82],
-    [0.267_988_333_762_469_5, 0.480_421_111_969_383_35, 5.0 / 36.0],
-];
-
 /// The share of each node's light that leaves a stretch, weights included; `depths`: of the whole stretch, if it were
 /// as at the node.
 pub(crate) fn thin_gains(depths: [f64; 3]) -> [f64; 3] {
@@ -116,6 +106,7 @@ pub type Media = ArrayVec<Medium, { CROSSINGS_KEPT + 1 }>;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::quadrature::GAUSS_NODES;
 
     /// The error of cells of matter that grows denser falls with the sixth power of their size, and thick cells go on
     /// where thin ones end.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of
-//! order 5 that the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations
-//! only through `geodesic`. Mirrored by `shaders/geodesic/integrator.wgsl`.
+//! Steps of light and of bodies in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom
+//! method of order 5 that the renderer uses; their common dense output; the step limit beside the horizon. Knows the
+//! equations only through `geodesic`. Mirrored by `shaders/geodesic/integrator.wgsl`.
 
 use super::geodesic::{Clock, Constants, State};
-use glam::DVec3;
+use super::quadrature::gauss_legendre;
+use glam::{DVec2, DVec3};
 
 /// A one-step method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,14 +55,18 @@ pub fn nystrom_step(c: &Constants, s: &State, h: f64, with_delay: bool) -> State
         drag: s.drag,
         delay: s.delay,
     };
+    if c.clock == Clock::Rain {
+        if c.a != 0.0 || with_delay {
+            let rain = rain_step(c, s, &end, h, with_delay);
+            (end.drag, end.delay) = (end.drag + rain.x, end.delay + rain.y);
+        }
+        return end;
+    }
     if c.a != 0.0 {
         end.drag += sum(nodes.map(|u| c.drag_rate(u)));
     }
     if with_delay {
-        end.delay += match c.clock {
-            Clock::Coordinate => sum(std::array::from_fn(|i| c.delay_rate(nodes[i], 0.0, n_z[i]))),
-            Clock::Rain => rain_delay_step(c, s, &end, h),
-        };
+        end.delay += sum(std::array::from_fn(|i| c.delay_rate(nodes[i], 0.0, n_z[i])));
     }
     end
 }
@@ -90,23 +95,27 @@ fn turn_n(c: &Constants, s: &State, h: f64) -> (DVec3, DVec3, [f64; 4]) {
     (s.n * cos + s.dn * (sin / kappa), s.dn * cos - s.n * (sin * kappa), [0.0; 4])
 }
 
-/// Rain time over one step: its rate needs u', which Nystrom stages do not have; Gauss-Legendre on the dense output.
-fn rain_delay_step(c: &Constants, from: &State, to: &State, h: f64) -> f64 {
+/// Drag and delay in Doran's chart over one step: their rates need u', which Nystrom stages do not have; Gauss-Legendre
+/// on the dense output.
+fn rain_step(c: &Constants, from: &State, to: &State, h: f64, with_delay: bool) -> DVec2 {
     // The dense output's slope is by the step.
     if h == 0.0 {
-        return 0.0;
+        return DVec2::ZERO;
     }
     let dense = Quintic::of_u(c, from, to, h);
-    h * gauss_legendre(|x| {
+    if c.a == 0.0 {
+        let delay = gauss_legendre(|x| {
+            let (u, du) = dense.at(x);
+            c.delay_rate(u, du, 0.0)
+        });
+        return DVec2::new(0.0, h * delay);
+    }
+    let n_z = Quintic::of_n_z(c, from, to, h);
+    let sum = gauss_legendre(|x| {
         let (u, du) = dense.at(x);
-        c.delay_rate(u, du, 0.0)
-    })
-}
-
-/// The integral of `f` over [0, 1]: Gauss-Legendre with three points, exact to the fifth degree.
-pub(super) fn gauss_legendre(f: impl Fn(f64) -> f64) -> f64 {
-    let offset = 0.6_f64.sqrt() / 2.0;
-    (5.0 * f(0.5 - offset) + 8.0 * f(0.5) + 5.0 * f(0.5 + offset)) / 18.0
+        DVec2::new(c.rain_drag_rate(u, du), if with_delay { c.delay_rate(u, du, n_z.at(x).0) } else { 0.0 })
+    });
+    sum * h + DVec2::new(c.rain_drag_boundary(to.u) - c.rain_drag_boundary(from.u), 0.0)
 }
 
 /// u, u', N, N', drag, delay as one vector, for the methods that treat the system as of first order.
@@ -139,9 +148,17 @@ fn derivative(c: &Constants, v: &Vector) -> Vector {
         f.x,
         f.y,
         f.z,
-        c.drag_rate(s.u),
+        if c.clock == Clock::Rain { c.rain_drag_rate(s.u, s.du) } else { c.drag_rate(s.u) },
         c.delay_rate(s.u, s.du, s.n.z),
     ]
+}
+
+/// The state of `end`, with the closed-form part of the drag since `begin`.
+fn with_drag_boundary(c: &Constants, begin: &State, end: State) -> State {
+    if c.clock == Clock::Coordinate || c.a == 0.0 {
+        return end;
+    }
+    State { drag: end.drag + c.rain_drag_boundary(end.u) - c.rain_drag_boundary(begin.u), ..end }
 }
 
 /// y + h sum_i weights[i] k[i].
@@ -155,7 +172,8 @@ pub fn rk4_step(c: &Constants, s: &State, h: f64) -> State {
     let k2 = derivative(c, &combine(&y, h, &[0.5], &[k1]));
     let k3 = derivative(c, &combine(&y, h, &[0.5], &[k2]));
     let k4 = derivative(c, &combine(&y, h, &[1.0], &[k3]));
-    from_vector(&combine(&y, h / 6.0, &[1.0, 2.0, 2.0, 1.0], &[k1, k2, k3, k4]))
+    let end = combine(&y, h / 6.0, &[1.0, 2.0, 2.0, 1.0], &[k1, k2, k3, k4]);
+    with_drag_boundary(c, s, from_vector(&end))
 }
 
 /// Stage weights, fifth-order weights (row 7 of the tableau: first same as last), and fifth minus fourth order.
@@ -180,7 +198,7 @@ pub fn dormand_prince_step(c: &Constants, s: &State, h: f64) -> (State, f64) {
         k[i + 1] = derivative(c, &end);
     }
     let error = combine(&[0.0; 10], h, &DP_ERROR, &k);
-    let end = from_vector(&end);
+    let end = with_drag_boundary(c, s, from_vector(&end));
     (end, error_norm(c, &end, &from_vector(&error)))
 }
 
@@ -200,34 +218,61 @@ fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
 ///
 /// Outside, beside the horizon (u > 0.3 u+): k (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+:
 /// drag and delay diverge there. k = 1.2 `h`, `h` being the step in sigma: rays that start or pass there lose no
-/// accuracy; but at most 0.35, and not below 0.03, which gives 1e-10. No limit for light that leaves by rain time: for
-/// it nothing diverges there. Inside (spin 0): `h` u / (|u'| + sqrt(|u''| u)), as u is large.
+/// accuracy; but at most 0.35, and not below 0.03, which gives 1e-10. For what leaves by rain time nothing diverges
+/// there: `advance_limit` with 1.5 `h`, and with spin `relative_limit` with as much. Inside: `relative_limit`, as u is
+/// large, and `advance_limit`, or, where W < 0, the limit above from the nearer horizon, because there x diverges at
+/// both.
 #[inline]
 pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     let u_plus = 1.0 / c.r_plus;
     if s.u <= 0.3 * u_plus {
         return f64::INFINITY;
     }
-    let curvature = c.u_acceleration(s.u).abs();
+    let room_limit = |room: f64| {
+        let curvature = c.u_acceleration(s.u).abs();
+        (1.2 * h).clamp(0.03, 0.35) * room / (s.du.abs() + (curvature * room).sqrt())
+    };
     if s.u >= u_plus {
-        return h * s.u / (s.du.abs() + (curvature * s.u).sqrt());
+        let inside = relative_limit(c, s, h);
+        if c.radial_energy(s.u) >= 0.0 {
+            return inside.min(advance_limit(c, s, 1.5 * h));
+        }
+        return inside.min(room_limit((s.u - u_plus).min((1.0 - c.r_minus * s.u).max(0.0) / c.r_minus)));
     }
     if c.clock == Clock::Rain && s.du < 0.0 {
-        return f64::INFINITY;
+        let advance = advance_limit(c, s, 1.5 * h);
+        return if c.a == 0.0 { advance } else { advance.min(relative_limit(c, s, 1.5 * h)) };
     }
-    let room = u_plus - s.u;
-    (1.2 * h).clamp(0.03, 0.35) * room / (s.du.abs() + (curvature * room).sqrt())
+    room_limit(u_plus - s.u)
 }
 
-/// Inside the horizon (spin 0) with u' from the first integral, u'^2 = E^2 - K u^2 (1 - 2 u): its other terms grow so
-/// much larger than E^2 there that what steps leave of their difference would make it another ray's. No ray from
-/// inside turns there: u' < 0.
+/// The step in tau over which x of what falls in (`Constants::advanced_rate`), and with it drag and delay, changes by
+/// about the part `h` of itself: at the horizon x is 1 / W, where W may be next to nothing. No limit for light without
+/// spin, whose W is 1.
+#[inline]
+fn advance_limit(c: &Constants, s: &State, h: f64) -> f64 {
+    if c.a == 0.0 && c.mu2 == 0.0 {
+        return f64::INFINITY;
+    }
+    let slope = 2.0 * c.a * (c.a * c.energy - c.angular_momentum) * s.u * s.du - c.u_acceleration(s.u);
+    h * (c.radial_energy(s.u) - s.du) / slope.abs()
+}
+
+/// The step in tau over which u changes by about the part `h` of itself: `h` u / (|u'| + sqrt(|u''| u)).
+#[inline]
+pub fn relative_limit(c: &Constants, s: &State, h: f64) -> f64 {
+    h * s.u / (s.du.abs() + (c.u_acceleration(s.u).abs() * s.u).sqrt())
+}
+
+/// Inside the horizon with u' from the first integral, u'^2 = W^2 - D (mu^2 + B u^2): its other terms grow so much
+/// larger than E^2 there that what steps leave of their difference would make it another ray's. Between the horizons D
+/// < 0, and u' < 0 of all that comes from outside: it turns nowhere.
 #[inline]
 pub fn held_inside(c: &Constants, s: State) -> State {
-    if c.a != 0.0 || s.du >= 0.0 || s.u * c.r_plus < 1.0 {
+    if (c.a != 0.0 && c.clock == Clock::Coordinate) || s.du >= 0.0 || s.u * c.r_plus < 1.0 {
         return s;
     }
-    State { du: -(c.energy * c.energy + c.k * s.u * s.u * (2.0 * s.u - 1.0)).sqrt(), ..s }
+    State { du: -c.radial_speed_squared(s.u).max(0.0).sqrt(), ..s }
 }
 
 /// Quintic Hermite interpolation over one step: value, slope and curvature at both ends. Error O(h^6).

@@ -8,13 +8,18 @@
 pub mod cie1931;
 pub mod limb_darkening;
 pub mod orbit;
+pub mod bound;
 pub mod blackbody;
 pub mod disk_flux;
+pub mod quadrature;
+pub mod rain;
 pub mod geodesic;
 pub mod metric;
 pub mod flow;
 pub mod integrator;
 pub mod observer;
+mod transport;
+pub mod world_line;
 pub mod plunge;
 pub mod images;
 pub mod shadow;

@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Observers: the local orthonormal frame at a place, how a moving observer's directions look in it (aberration), and
-//! the start of the light ray that a look direction stands for. Knows no integrator.
+//! the start of the light ray that a look direction stands for, or of a body's world line. Knows no integrator.
 //!
 //! A look direction n is opposite to the photon's momentum. Components are along (e_r, e_th, e_ph) of the local static
-//! observer (ZAMO when the hole spins), or, at or inside a spin-0 horizon and for a camera falling from rest at
-//! infinity, of the rain observer, whose tetrad is the static one boosted by -sqrt(2/r) e_r (Painleve 1921, Gullstrand
-//! 1922).
+//! observer (ZAMO when the hole spins), or, at or inside a horizon and for a camera falling from rest at infinity, of
+//! the rain observer, whose tetrad is the static one boosted by -sqrt(2/r) e_r (Painleve 1921, Gullstrand 1922).
+//!
+//! About a spinning hole the rain observer is Doran's (2000, Phys. Rev. D 61, 067503), who falls with E = 1, L = Q = 0:
+//! e_T = d_T - sqrt(2 r (r^2 + a^2)) / Sigma d_r. The triad is the ZAMO's boosted along -e_r, too: e_ph along d_ph and
+//! e_th along d_th, both as the azimuth of Doran's chart has them. It is regular at both horizons. Doran's own triad is
+//!
+//! ```text
+//! E_r = sqrt(r^2 + a^2) / rho d_r        E_th = d_th / rho        rho^2 = Sigma = r^2 + a^2 cos^2 th
+//! E_ph = d_ph / (sqrt(r^2 + a^2) s) + a s sqrt(2 r) / Sigma d_r,  s = sin th
+//! ```
+//!
+//! which is turned about E_th by the angle d: e_ph = cos d E_ph + sin d E_r, e_r = cos d E_r - sin d E_ph, where
+//!
+//! ```text
+//! sin d = -sqrt(2 r) a s / (rho Q),   cos d = sqrt(r^2 + a^2) / Q,   Q = sqrt(g_phph) / s
+//! ```
 
-use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State};
-use super::orbit::{circular_orbit, horizon_inner, horizon_outer, zamo_omega};
+use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State, turned};
+use super::orbit::{circular_orbit, horizon_inner, horizon_outer, innermost_radius, zamo_omega};
+use crate::error::{Error, Number, Result};
 use glam::DVec3;
 
 /// Below this E (at nu_local = 1) rays keep nu_local = 1: E = 1 would scale K and L beyond use, and E <= 0 turn tau
@@ -54,6 +69,60 @@ impl Momenta {
     }
 }
 
+/// A momentum as the observer of a frame measures it: light's, or a body's per mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Momentum {
+    /// Frequency or energy, > 0: gamma of a body.
+    pub energy: f64,
+    /// Components (p_r, p_th, p_ph).
+    pub space: DVec3,
+    /// mu^2 = energy^2 - space^2: 0 or 1.
+    pub mu2: f64,
+}
+
+impl Momentum {
+    /// Light of frequency 1 that is seen in the unit look direction `n`.
+    pub fn of_light(n: DVec3) -> Self {
+        Self { energy: 1.0, space: -n, mu2: 0.0 }
+    }
+
+    /// A body of mass 1 at the velocity `beta`, |beta| < 1.
+    pub fn of_body(beta: DVec3) -> Self {
+        let gamma = 1.0 / (1.0 - beta.length_squared()).max(0.5 * f64::EPSILON).sqrt();
+        Self { energy: gamma, space: beta * gamma, mu2: 1.0 }
+    }
+}
+
+/// The numbers that the rain triad at a place is made of.
+#[derive(Clone, Copy, Debug)]
+struct RainTriad {
+    u: f64,
+    /// sqrt(2 u).
+    w: f64,
+    /// rho / r.
+    rho: f64,
+    /// sqrt(1 + a^2 u^2).
+    q: f64,
+    /// Q / r, Q = sqrt(g_phph) / sin th.
+    circumference: f64,
+    sin_turn: f64,
+    cos_turn: f64,
+}
+
+/// A momentum in Doran's chart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DoranMomentum {
+    /// E and L / sin th.
+    pub energy: f64,
+    pub around: f64,
+    /// Sigma p^th.
+    pub polar: f64,
+    /// u' of `State`.
+    pub du: f64,
+    /// x of `Constants::advanced_rate`, which is linear in the momentum.
+    pub advanced_rate: f64,
+}
+
 /// Why no frame exists at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoFrame {
@@ -77,15 +146,7 @@ impl LocalFrame {
         if rain && a != 0.0 {
             return Err(NoFrame::InsideSpinningHorizon);
         }
-        let lapse = if rain {
-            f64::NAN
-        } else {
-            let sum = r * r + a * a;
-            let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
-            let sigma = r * r + (a * cos).powi(2);
-            (sigma * delta / (sum * sum - delta * (a * sin).powi(2))).sqrt()
-        };
-        Ok(Self {
+        let frame = Self {
             a,
             r,
             sin,
@@ -94,8 +155,57 @@ impl LocalFrame {
             e_theta: DVec3::new(cos * cos_phi, cos * sin_phi, -sin),
             e_phi: DVec3::new(-sin_phi, cos_phi, 0.0),
             rain,
-            lapse,
-        })
+            lapse: f64::NAN,
+        };
+        Ok(if rain { frame } else { Self { lapse: frame.zamo_lapse(), ..frame } })
+    }
+
+    /// The rain frame at `position`, whose azimuth is Doran's (M = 1), outside the hole or inside: |a| <= 1, r > r- (1
+    /// + 1e-6). Errors: INVALID_ARGUMENT for a spin or a place that is none, UNSUPPORTED farther in.
+    pub fn rain(a: f64, position: DVec3) -> Result<Self> {
+        if a.is_nan() || a.abs() > 1.0 {
+            return Err(Error::argument(format!("a spin of {} is no hole's: it must lie in [-1, 1]", Number(a))));
+        }
+        // Its axes do not depend on the spin, and without spin there is a frame at every place.
+        let Ok(place) = Self::new(0.0, position) else {
+            return Err(Error::argument(format!(
+                "position ({}, {}, {}) is no place: it must be finite, and not the hole's centre",
+                Number(position.x),
+                Number(position.y),
+                Number(position.z)
+            )));
+        };
+        let least = innermost_radius(a);
+        if place.r <= least {
+            return Err(Error::unsupported(format!(
+                "r = {} M lies at or within {} M, which is r- (1 + 1e-6) of spin {}; the inside is known down to there",
+                Number(place.r),
+                Number(least),
+                Number(a)
+            )));
+        }
+        Ok(place.to_rain_of(a))
+    }
+
+    /// The rain frame of a hole of spin `a` at this place, of which the axes are the same at every spin.
+    pub(crate) fn to_rain_of(self, a: f64) -> Self {
+        Self { a, rain: true, lapse: f64::NAN, ..self }
+    }
+
+    /// This frame at the place that is turned about the hole's axis by `angle`. On the axis, too, its axes turn.
+    pub(crate) fn turned(self, angle: f64) -> Self {
+        let [e_r, e_theta, e_phi] = [self.e_r, self.e_theta, self.e_phi].map(|axis| turned(axis, angle));
+        Self { e_r, e_theta, e_phi, ..self }
+    }
+
+    /// sqrt(Sigma Delta / A), the ZAMO's lapse; NaN at or inside the horizon.
+    fn zamo_lapse(&self) -> f64 {
+        let (a, r) = (self.a, self.r);
+        let sum = r * r + a * a;
+        let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+        let sigma = r * r + (a * self.cos).powi(2);
+        let squared = sigma * delta / (sum * sum - delta * (a * self.sin).powi(2));
+        if r > horizon_outer(a) { squared.sqrt() } else { f64::NAN }
     }
 
     /// The rain frame at the same place. Spin 0 only.
@@ -106,12 +216,15 @@ impl LocalFrame {
 
     /// The clock by which rays of this frame tell times.
     pub fn clock(&self) -> Clock {
-        if self.rain && self.r <= RAIN_CLOCK_RADIUS { Clock::Rain } else { Clock::Coordinate }
+        if self.rain && (self.a != 0.0 || self.r <= RAIN_CLOCK_RADIUS) { Clock::Rain } else { Clock::Coordinate }
     }
 
-    /// sqrt(1 - 2 / r), the lapse of the static observer at a place where the frame is that of the rain observer.
-    /// `None`: the frame is the static observer's (or the ZAMO's) own, or no observer is at rest there.
+    /// The lapse of the static observer (the ZAMO) at a place where the frame is that of the rain observer: sqrt(1 - 2
+    /// / r) without spin. `None`: the frame is the static observer's own, or no observer is at rest there.
     pub fn static_lapse(&self) -> Option<f64> {
+        if self.a != 0.0 {
+            return Some(self.zamo_lapse()).filter(|lapse| self.rain && *lapse > 0.0);
+        }
         let squared = 1.0 - 2.0 / self.r;
         (self.rain && squared > 0.0).then(|| squared.sqrt())
     }
@@ -128,6 +241,15 @@ impl LocalFrame {
 
     /// E and L of the frame's rays at nu_local = 1, as in `start`.
     pub fn momenta(&self) -> Momenta {
+        if self.rain && self.a != 0.0 {
+            let triad = self.rain_triad();
+            let speed = triad.w / triad.rho;
+            return Momenta {
+                energy: 1.0,
+                energy_gradient: DVec3::new(triad.cos_turn * speed, 0.0, triad.sin_turn * speed),
+                angular_momentum_gradient: DVec3::new(0.0, 0.0, -self.sin * (self.r * triad.circumference)),
+            };
+        }
         if self.rain {
             let beta = (2.0 / self.r).sqrt();
             return Momenta {
@@ -152,10 +274,19 @@ impl LocalFrame {
         (big_a / sigma).sqrt() / u
     }
 
-    /// The backward ray along the unit look direction `n` (components). `None`: no light comes from there (E <= 0 in
-    /// the rain frame: it would have to leave the past horizon); such a ray is captured and crosses nothing.
+    /// The backward ray along the unit look direction `n` (components). `None`: no light comes from there (in the rain
+    /// frame inside the horizon: it would have to leave the past horizon, or come from another outside); such a ray is
+    /// captured and crosses nothing.
     pub fn start(&self, n: DVec3) -> Option<(Constants, State)> {
         if self.rain { self.start_rain(n) } else { Some(self.start_zamo(n)) }
+    }
+
+    /// The constants and the state, in Doran's chart, of a body of mass 1 that has this momentum in the rain frame.
+    pub fn start_body(&self, momentum: &Momentum) -> (Constants, State) {
+        debug_assert!(self.rain);
+        let m = self.doran_momentum(momentum);
+        let constants = Constants::of_body(self.a, m.energy, self.sin * m.around, self.carter(&m, 1.0), 1.0 / self.r);
+        (constants, self.state(&m, 1.0))
     }
 
     /// The start values of docs/numerics.md: outside the ergosphere no difference of nearly equal numbers appears.
@@ -185,30 +316,90 @@ impl LocalFrame {
         (constants, state)
     }
 
-    /// The start values in the rain tetrad e_T = d_T - beta d_r, e_r = d_r, e_th = d_th / r, e_ph = d_ph / (r s), beta
-    /// = sqrt(2 u).
+    /// Light in the rain frame, at any spin. Inside the horizon light with P = E (r^2 + a^2) - a L <= 0 at r+ does not
+    /// come from outside; without spin that is E <= 0.
     fn start_rain(&self, n: DVec3) -> Option<(Constants, State)> {
-        let u = 1.0 / self.r;
-        let beta = (2.0 * u).sqrt();
-        let p = -n;
-        let energy = 1.0 + beta * n.x;
-        if energy <= 0.0 {
+        let (a, r_plus) = (self.a, horizon_outer(self.a));
+        let m = self.doran_momentum(&Momentum::of_light(n));
+        let energy_there = m.energy * (r_plus * r_plus + a * a) - a * (self.sin * m.around);
+        if (a == 0.0 || self.r <= r_plus) && energy_there <= 0.0 {
             return None;
         }
-        let e = 1.0 / energy;
-        let (polar, w) = (self.r * p.y * e, self.r * p.z * e);
-        let carter = polar * polar + (self.cos * w).powi(2);
-        let mut constants = Constants::new(0.0, 1.0, self.sin * w, carter, e, u);
+        // Without spin only light of E > 0 comes this far.
+        let is_unit = a == 0.0 || m.energy > SMALLEST_UNIT_ENERGY;
+        let (e, energy) = if is_unit { (1.0 / m.energy, 1.0) } else { (1.0, m.energy) };
+        let carter = self.carter(&DoranMomentum { energy, polar: m.polar * e, around: m.around * e, ..m }, 0.0);
+        let mut constants = Constants::new(a, energy, self.sin * (m.around * e), carter, e, 1.0 / self.r);
         constants.clock = self.clock();
-        let state = State {
-            u,
-            du: e * (p.x - beta),
+        Some((constants, self.state(&m, e)))
+    }
+
+    /// Q = (Sigma p^th)^2 + cos^2 th (a^2 (mu^2 - E^2) + L^2 / sin^2 th).
+    fn carter(&self, m: &DoranMomentum, mu2: f64) -> f64 {
+        let c = self.cos;
+        m.polar * m.polar + (c * m.around).powi(2) - c * c * ((self.a * m.energy).powi(2) - mu2 * (self.a * self.a))
+    }
+
+    /// The state that a momentum in the rain frame, times `e`, starts.
+    fn state(&self, m: &DoranMomentum, e: f64) -> State {
+        State {
+            u: 1.0 / self.r,
+            du: e * m.du,
             n: self.e_r,
-            dn: -(self.e_theta * polar + self.e_phi * w),
+            dn: -(self.e_theta * (m.polar * e) + self.e_phi * (m.around * e)),
             drag: 0.0,
             delay: 0.0,
-        };
-        Some((constants, state))
+        }
+    }
+
+    fn rain_triad(&self) -> RainTriad {
+        let u = 1.0 / self.r;
+        let au = self.a * u;
+        let w = (2.0 * u).sqrt();
+        let rho2 = 1.0 + (au * self.cos).powi(2);
+        let (rho, q) = (rho2.sqrt(), (1.0 + au * au).sqrt());
+        // g_phph = s^2 (r^2 + a^2 + 2 r a^2 s^2 / Sigma): positive inside, too.
+        let circumference = (1.0 + au * au + 2.0 * u * (au * self.sin).powi(2) / rho2).sqrt();
+        let sin_turn = -w * au * self.sin / (rho * circumference);
+        RainTriad { u, w, rho, q, circumference, sin_turn, cos_turn: q / circumference }
+    }
+
+    /// A momentum in the rain triad as constants of motion and rates: with p^r and p^ph along E_r and E_ph
+    ///
+    /// ```text
+    /// E = p^T - sqrt(2 r) / rho p^r                        L = sqrt(g_phph) p_ph          Sigma p^th = rho p_th
+    /// u' = q (rho / r p^r - w p^T) + a u s w p^ph          x = (p^T + (rho / r p^r - a u s p^ph) / q) / (1 + w / q)
+    /// ```
+    pub(crate) fn doran_momentum(&self, p: &Momentum) -> DoranMomentum {
+        let t = self.rain_triad();
+        let (radial, around) =
+            (t.cos_turn * p.space.x + t.sin_turn * p.space.z, t.cos_turn * p.space.z - t.sin_turn * p.space.x);
+        let aus = self.a * t.u * self.sin;
+        DoranMomentum {
+            energy: p.energy - t.w / t.rho * radial,
+            around: self.r * t.circumference * p.space.z,
+            polar: self.r * t.rho * p.space.y,
+            du: t.q * (t.rho * radial - t.w * p.energy) + aus * t.w * around,
+            advanced_rate: (p.energy + (t.rho * radial - aus * around) / t.q) / (1.0 + t.w / t.q),
+        }
+    }
+
+    /// The momentum in the rain frame of what is here in the state `there`, whose chart is the frame's: what
+    /// `doran_momentum` is of it. p^r = (w x + u' / (q (1 + w / q))) r / rho has no difference that vanishes at a
+    /// horizon.
+    pub(crate) fn momentum(&self, c: &Constants, there: &State) -> Momentum {
+        let t = self.rain_triad();
+        let motion = -turned(there.dn, there.drag);
+        let (polar, around) = (self.e_theta.dot(motion), self.e_phi.dot(motion));
+        let radial = (t.w * c.advanced_rate(there.u, there.du) + there.du / (t.q + t.w)) / t.rho;
+        let aus = self.a * t.u * self.sin;
+        let azimuthal = (around * t.u + radial * t.w * aus / t.rho) / t.q;
+        let space = DVec3::new(
+            t.cos_turn * radial - t.sin_turn * azimuthal,
+            polar * t.u / t.rho,
+            around * t.u / t.circumference,
+        );
+        Momentum { energy: c.energy + t.w / t.rho * radial, space, mu2: c.mu2 }
     }
 }
 
@@ -312,8 +503,9 @@ impl Observer {
         if !self.frame.rain {
             return self.frame.lapse / self.gamma;
         }
-        // At rest in the rain frame, E = 1: d tau / d t = 1 - 2/r.
-        let rate = (self.frame.r - 2.0) / self.frame.r;
+        // At rest in the rain frame, E = 1: d tau / d t is the square of the lapse, 1 - 2/r without spin.
+        let spinning = self.frame.a != 0.0;
+        let rate = if spinning { self.frame.zamo_lapse().powi(2) } else { (self.frame.r - 2.0) / self.frame.r };
         if rate > 0.0 { rate } else { f64::NAN }
     }
 }

@@ -14,6 +14,12 @@ pub fn horizon_inner(a: f64) -> f64 {
     a * a / horizon_outer(a)
 }
 
+/// The least r that observers and bodies inside a hole are followed to: r- (1 + 1e-6), |a| <= 1. From there to r- the
+/// sky's light comes in a time that ends before it does.
+pub fn innermost_radius(a: f64) -> f64 {
+    horizon_inner(a) * (1.0 + 1e-6)
+}
+
 /// The static limit at polar angle th: 1 + sqrt(1 - a^2 cos^2 th).
 pub fn ergosphere(a: f64, theta: f64) -> f64 {
     1.0 + (1.0 - (a * theta.cos()).powi(2)).max(0.0).sqrt()

@@ -217,11 +217,12 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     let h_most = if adaptive { 0.5 / c.scale } else { h_wish };
     for count in 1..=settings.max_steps {
         let limit = step_limit(c, &state, settings.step);
-        // Inside the horizon one fixed step in sigma could change u of a nearly radial ray by any amount: only the step
-        // limit, and the adaptive method's own choice, bound steps there.
+        // Inside the horizon one fixed step in sigma could change u of a nearly radial ray by any amount, or by next to
+        // nothing: only the step limit, with spin N, and the adaptive method's own choice bound steps there.
         let inside = state.u >= u_plus;
         let h = match (inside, adaptive) {
-            (true, false) => limit,
+            (true, false) if c.a == 0.0 => limit,
+            (true, false) => limit.min(settings.step / c.turn_rate()),
             (true, true) => h_wish.min(limit),
             (false, _) => h_wish.min(h_most).min(limit),
         };

@@ -63,7 +63,8 @@ pub fn constants(i: &Inputs) -> Constants {
     // Rays of E = 1 have other formulas in f64: it is 1 under every shift.
     let energy = if i.f(1) == 1.0 { 1.0 } else { energy };
     let clock = if i.word(12) == Clock::Rain as u32 { Clock::Rain } else { Clock::Coordinate };
-    Constants { a, energy, angular_momentum, carter, k, b, a2e2, nu_local, u_observer, scale, r_plus, r_minus, clock }
+    let light = Constants::new(a, energy, angular_momentum, carter, nu_local, u_observer);
+    Constants { k, b, a2e2, scale, r_plus, r_minus, clock, ..light }
 }
 
 pub fn state(i: &Inputs, k: usize) -> State {

@@ -10,7 +10,7 @@ use crate::emit::Shift;
 use crate::emit::bands::When;
 use crate::emit::glow::Glow;
 use crate::emit::matter::{Accuracy, SpotMatter, VolumeMatter};
-use crate::emit::medium::{GAUSS_WEIGHTS, THICK, layer_gains, thin_gains};
+use crate::emit::medium::{THICK, layer_gains, thin_gains};
 use crate::emit::shape::{
     Cloud, Reach, Stretch, disk_density, gaussian, halo_density, jet_density, smooth_step, torus_density,
 };
@@ -21,6 +21,7 @@ use crate::physics::flow::{Flow, Motion, Place, Velocity, ZamoLight, keplerian, 
 use crate::physics::geodesic::State;
 use crate::physics::integrator::Quintic;
 use crate::physics::orbit::{horizon_outer, isco};
+use crate::physics::quadrature::GAUSS_WEIGHTS;
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
 use crate::sky::StarField;
 

@@ -27,8 +27,9 @@ use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE, LENS};
 use crate::allocate::{collected, with_room};
 use crate::error::Result;
 use crate::physics::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, rain_offset};
-use crate::physics::integrator::{B, D, Quintic, gauss_legendre};
+use crate::physics::integrator::{B, D, Quintic};
 use crate::physics::observer::LocalFrame;
+use crate::physics::quadrature::gauss_legendre;
 use crate::physics::shadow::critical_direction;
 use std::ops::RangeInclusive;
 

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `physics` alone against the reference values in tests/golden that need no tracer of pictures: shadows, redshifts,
-//! Kerr radii, Bardeen's curve, Luminet's isoradials and the Page-Thorne flux; to 1e-9 relative, flux to 1e-11. Files
-//! are found from the package's root, where cargo runs tests.
+//! Kerr radii, Bardeen's curve, Luminet's isoradials and the Page-Thorne flux; to 1e-9 relative, flux to 1e-11. In
+//! files of their own: the inside of spinning holes, and bodies. Files are found from the package's root, where cargo
+//! runs tests.
+
+mod bodies;
+mod inside;
+#[path = "../random/mod.rs"]
+mod random;
 
 use bhr::physics::disk_flux::{page_thorne, page_thorne_maximum};
 use bhr::physics::geodesic::{Constants, State};
