@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-/// The most bytes of pixels that wait to be written.
+/// The most bytes of pixels that are being rendered, or wait to be written.
 const MOST_BYTES: u64 = 4 << 30;
 
 /// Larger frames are a slip, and no machine's memory.
@@ -86,6 +86,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// How many frames of so many bytes may be rendered, or wait to be written, at a time: one at least.
+pub fn that_fit(frame_bytes: usize) -> usize {
+    usize::try_from(MOST_BYTES / frame_bytes.max(1) as u64).unwrap_or(usize::MAX).max(1)
+}
+
 fn no_memory(message: impl Into<String>) -> Ending {
     bhr::error::Error::new(bhr::error::ErrorKind::OutOfMemory, message).into()
 }
@@ -96,8 +101,7 @@ impl Encoders {
     pub fn new(threads: usize, renderers: usize, frames: usize, frame_bytes: usize) -> Result<Self, Ending> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = (if threads == 0 { cores } else { threads }).clamp(1, frames.max(1));
-        let that_fit = usize::try_from(MOST_BYTES / frame_bytes.max(1) as u64).unwrap_or(usize::MAX);
-        let most_buffers = that_fit.clamp(1, threads + renderers + 1).min(frames.max(1));
+        let most_buffers = that_fit(frame_bytes).clamp(1, threads + renderers + 1).min(frames.max(1));
         let (give_back, free) = channel();
         let (orders, taken) = sync_channel::<Frame>(most_buffers);
         let taken = Arc::new(Mutex::new(taken));
@@ -166,7 +170,7 @@ impl Pool {
     }
 }
 
-/// How far the threads that write stand behind those that render, in steps of nice(2).
+/// Added to the niceness (nice(2)) of threads that write.
 #[cfg(target_os = "linux")]
 const STEPS_BEHIND: i32 = 5;
 

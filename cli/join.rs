@@ -3,7 +3,7 @@
 //! it they agree, as tiles are parts of one frame.
 
 use crate::ending::Ending;
-use crate::manifest::{Fingerprint, Manifest};
+use crate::manifest::{Fingerprint, Manifest, Tile};
 use crate::progress::say;
 use bhr::image::{
     Alpha, Attribute, Channels, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load, load_channels, save,
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The attributes that say where a tile is in its frame. The whole frame's are 0.
+/// The attributes that say where a tile is: in its frame, which may itself be a region of a larger one.
 const PLACE: [&str; 2] = ["bhr.region.x", "bhr.region.y"];
 
 /// The picture that is put together.
@@ -39,7 +39,7 @@ struct Manifests(BTreeMap<PathBuf, Vec<Manifest>>);
 
 impl Manifests {
     /// The frame and the place of a tile, as the manifest in its folder says that names it.
-    fn find(&mut self, tile: &Path) -> Result<(Fingerprint, Region), Ending> {
+    fn find(&mut self, tile: &Path) -> Result<(Fingerprint, Tile), Ending> {
         let folder = tile.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !self.0.contains_key(folder) {
             let entries = std::fs::read_dir(folder).map_err(|error| Ending::io(folder, error))?;
@@ -53,7 +53,7 @@ impl Manifests {
         let wrong = |what: &str| Err(Ending::data(format!("{}: {what}", tile.display())));
         match &found[..] {
             [Some(found)] => match found.tile {
-                Some(tile) => Ok((found.clone(), tile.region)),
+                Some(tile) => Ok((found.clone(), tile)),
                 None => wrong("it is a whole frame, as its manifest says"),
             },
             [None] => wrong("it was being written when its program was killed; render it again"),
@@ -65,12 +65,12 @@ impl Manifests {
 
 impl Joined {
     /// The whole that a first tile is a part of, all zeros.
-    fn new(region: &Region, first: &Tile) -> Result<Self, Ending> {
+    fn new(region: &Region, first: &Saved) -> Result<Self, Ending> {
         let size = [region.full_width, region.full_height];
-        let count = size[0] as usize * size[1] as usize;
+        let count = (size[0] as usize).saturating_mul(size[1] as usize);
         let whole = match first {
-            Tile::Bytes(_) => Whole::Bytes(zeros(4 * count)?),
-            Tile::Channels(first) => {
+            Saved::Bytes(_) => Whole::Bytes(zeros(count.saturating_mul(4))?),
+            Saved::Channels(first) => {
                 let mut list = Vec::with_capacity(first.list.len());
                 for (name, values) in &first.list {
                     let values = match values {
@@ -81,8 +81,9 @@ impl Joined {
                 }
                 let mut attributes = first.attributes.clone();
                 for (name, value) in &mut attributes {
-                    if PLACE.contains(&name.as_str()) {
-                        *value = Attribute::Number(0.0);
+                    let place = PLACE.iter().zip([region.x, region.y]).find(|(of, _)| *of == name);
+                    if let (Some((_, place)), Attribute::Number(number)) = (place, value) {
+                        *number -= f64::from(place);
                     }
                 }
                 Whole::Channels(Channels { width: size[0], height: size[1], list, attributes })
@@ -91,10 +92,15 @@ impl Joined {
         Ok(Self { size, whole, there: zeros(count)? })
     }
 
-    fn put(&mut self, tile: &Tile, region: &Region, path: &Path) -> Result<(), Ending> {
+    fn put(&mut self, tile: &Saved, of: &Tile, path: &Path) -> Result<(), Ending> {
+        let Tile { region, size } = of;
         let wrong = |what: &str| Err(Ending::data(format!("{}: {what}", path.display())));
         let [width, height] = self.size;
         let [tile_width, tile_height] = tile.size();
+        if tile.size() != *size {
+            let [w, h] = size;
+            return wrong(&format!("it has {tile_width} x {tile_height} pixels; its manifest says {w} x {h}"));
+        }
         let fits = u64::from(region.x) + u64::from(tile_width) <= u64::from(width)
             && u64::from(region.y) + u64::from(tile_height) <= u64::from(height);
         if !fits || [region.full_width, region.full_height] != self.size {
@@ -110,13 +116,13 @@ impl Joined {
             self.there[to].fill(1);
         }
         match (&mut self.whole, tile) {
-            (Whole::Bytes(all), Tile::Bytes(tile)) => {
+            (Whole::Bytes(all), Saved::Bytes(tile)) => {
                 let bytes = tile.pixels.as_bytes();
                 for (to, from) in rows {
                     all[4 * to.start..4 * to.end].copy_from_slice(&bytes[4 * from.start..4 * from.end]);
                 }
             }
-            (Whole::Channels(all), Tile::Channels(tile)) => {
+            (Whole::Channels(all), Saved::Channels(tile)) => {
                 let same = all.list.iter().map(|(name, _)| name).eq(tile.list.iter().map(|(name, _)| name));
                 if !same {
                     return wrong("it has other layers than the tiles before it");
@@ -138,7 +144,7 @@ impl Joined {
         Ok(())
     }
 
-    fn save(&self, out: &Path) -> Result<(), Ending> {
+    fn save(&self, effort: Effort, out: &Path) -> Result<(), Ending> {
         if let Some(place) = self.there.iter().position(|there| *there == 0) {
             let (x, y) = (place % self.size[0] as usize, place / self.size[0] as usize);
             return Err(Ending::data(format!("no tile has the pixel {x}, {y}")));
@@ -149,19 +155,19 @@ impl Joined {
                 let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), bytes)?;
                 save(&image, Alpha::AsInFile, out)?;
             }
-            Whole::Channels(all) => save_channels(all, Effort::default(), out)?,
+            Whole::Channels(all) => save_channels(all, effort, out)?,
         }
         Ok(())
     }
 }
 
 /// A tile as it was saved.
-enum Tile {
+enum Saved {
     Bytes(Loaded),
     Channels(Channels),
 }
 
-impl Tile {
+impl Saved {
     fn load(path: &Path) -> Result<Self, Ending> {
         if is_exr(path) {
             return Ok(Self::Channels(load_channels(path)?));
@@ -206,7 +212,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
     let mut joined: Option<Joined> = None;
     let (mut manifests, mut first) = (Manifests::default(), None);
     for path in &tiles {
-        let (of, region) = manifests.find(path)?;
+        let (of, place) = manifests.find(path)?;
         let (frame, scene) = first.get_or_insert_with(|| (of.frame, of.scene.clone()));
         if (of.frame, &of.scene) != (*frame, &*scene) {
             return Err(Ending::data(format!("{}: it is a tile of another frame", path.display())));
@@ -214,14 +220,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         if is_exr(path) != is_exr(out) {
             return Err(Ending::data(format!("{}: it is another kind of file than --out", path.display())));
         }
-        let tile = Tile::load(path)?;
+        let tile = Saved::load(path)?;
         let whole = match &mut joined {
             Some(whole) => whole,
-            None => joined.insert(Joined::new(&region, &tile)?),
+            None => joined.insert(Joined::new(&place.region, &tile)?),
         };
-        whole.put(&tile, &region, path)?;
+        whole.put(&tile, &place, path)?;
     }
-    joined.ok_or_else(|| Ending::usage("no tiles"))?.save(out)?;
+    let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
+    joined.ok_or_else(|| Ending::usage("no tiles"))?.save(effort, out)?;
     say(&format!("{}: {} tiles", out.display(), tiles.len()));
     Ok(())
 }

@@ -97,13 +97,10 @@ fn command() -> Command {
                 .value_parser(value_parser!(u32).range(0..=MOST_ENCODERS)),
         )
         .arg(
-            option("at-a-time", "N", "Frames that each adapter works at, to 8; default 2, of a processor 1")
+            option("at-a-time", "N", "Frames that an adapter renders at once, to 8; default 2, on a processor 1")
                 .value_parser(value_parser!(u32).range(1..=8)),
         )
-        .arg(
-            option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 4")
-                .value_parser(value_parser!(i32).range(1..=9)),
-        )
+        .arg(compression())
         .arg(option("progress", "KIND", "auto, bar, plain, json, openjd or none").default_value("auto"))
         .args(device());
     Command::new("bhr")
@@ -143,7 +140,8 @@ fn command() -> Command {
                         .value_parser(value_parser!(PathBuf))
                         .help("The tiles' files; the manifests beside them say where each belongs"),
                 )
-                .arg(option("out", "FILE", "A .png or .exr file").required(true).value_parser(value_parser!(PathBuf))),
+                .arg(option("out", "FILE", "A .png or .exr file").required(true).value_parser(value_parser!(PathBuf)))
+                .arg(compression()),
         )
         .subcommand(
             Command::new("man")
@@ -170,6 +168,11 @@ fn run(matches: &ArgMatches) -> Result<(), Ending> {
 fn man(given: &ArgMatches) -> Result<(), Ending> {
     let folder = given.get_one::<PathBuf>("folder").ok_or_else(|| Ending::usage("no folder"))?;
     clap_mangen::generate_to(command(), folder).map_err(|error| Ending::io(folder, error))
+}
+
+fn compression() -> Arg {
+    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 4")
+        .value_parser(value_parser!(i32).range(1..=9))
 }
 
 /// The most threads that write files.

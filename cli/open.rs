@@ -106,9 +106,9 @@ fn backend(given: &ArgMatches) -> Result<Option<Backend>, Ending> {
 /// Opens one more renderer, if it can be had.
 pub type Opener = Box<dyn FnOnce() -> Option<Renderer> + Send>;
 
-/// The frames that a GPU works at a time, and those of a processor, whose cores one frame takes all.
+/// The frames that a GPU renders at a time, and those of a processor, where one frame uses all cores.
 const AT_A_TIME: [usize; 2] = [2, 1];
-/// Films of fewer frames are done before one more renderer is opened.
+/// For fewer frames another renderer is not worth opening.
 const WORTH_ANOTHER: usize = 8;
 
 /// Openers of more renderers beside each of those that [`renderers`] gives, by its number, on the adapter that it has.

@@ -151,6 +151,11 @@ impl Order {
         if !outputs.is_empty() && (format.is_developed() || stereo.is_some()) {
             return Err(Ending::usage("--outputs: only .exr files of one eye have layers"));
         }
+        if tile.is_some() && stereo.is_some() && codec.is_none() {
+            return Err(Ending::usage(
+                "--tile: tiles of both eyes cannot be joined; only a video takes it with --stereo",
+            ));
+        }
         let samples = given.get_one::<u32>("samples").copied();
         let transparent = given.get_flag("transparent");
         let map = opened.file.map().map(|map| std::fs::read(map).map_err(|error| Ending::io(map, error)));
@@ -185,7 +190,12 @@ impl Order {
             )));
         }
         let [full_width, full_height] = self.size;
-        let region = self.tile.map(|[x, y, _, _]| Region { full_width, full_height, x, y }).or(region);
+        let whole = || region.unwrap_or(Region { full_width, full_height, x: 0, y: 0 });
+        let tile = |[x, y, _, _]: [u32; 4]| {
+            let whole = whole();
+            Region { x: whole.x.saturating_add(x), y: whole.y.saturating_add(y), ..whole }
+        };
+        let region = self.tile.map(tile).or(region);
         Ok((region, self.eye_size()))
     }
 

@@ -4,7 +4,7 @@
 //! killed at any time. Knows no video.
 
 use crate::claim::Claim;
-use crate::encode::{Done, Encoders, Frame, Written};
+use crate::encode::{Done, Encoders, Frame, Written, that_fit};
 use crate::ending::Ending;
 use crate::frames::Names;
 use crate::manifest::{Made, Manifest};
@@ -36,9 +36,13 @@ pub struct Pictures<'a> {
 }
 
 /// The frames that no renderer has taken, and the renderers that take them.
+#[derive(Default)]
 struct Left {
     frames: VecDeque<u32>,
     at_work: usize,
+    /// Renderers that ended for want of memory, and those of them that have not given theirs back yet.
+    have_left: usize,
+    leaving: usize,
 }
 
 impl Left {
@@ -52,14 +56,30 @@ impl Left {
         frame
     }
 
-    /// Leaves a frame to the renderers beside this one, which then ends; not if it is the last one at work.
-    fn leave(&mut self, frame: u32) -> bool {
-        let others = self.at_work > 1;
-        if others {
+    /// Leaves a frame, and those that were `waited` for, to the renderers beside this one, which then ends; not if it
+    /// is the last one at work.
+    fn leave(&mut self, frame: u32, waited: &mut Vec<u32>) -> bool {
+        let beside = self.at_work > 1;
+        if beside {
             self.at_work -= 1;
+            self.have_left += 1;
+            self.leaving += 1;
             self.frames.push_front(frame);
+            self.frames.extend(waited.drain(..));
         }
-        others
+        beside
+    }
+}
+
+/// Says that a renderer has failed, for the others to end, unless it ended well: also where it panicked.
+struct Failing<'a> {
+    failed: &'a AtomicBool,
+    has_ended_well: bool,
+}
+
+impl Drop for Failing<'_> {
+    fn drop(&mut self) {
+        self.failed.fetch_or(!self.has_ended_well, Ordering::Relaxed);
     }
 }
 
@@ -91,21 +111,29 @@ impl Pictures<'_> {
         progress: &Progress,
     ) -> Result<(), Ending> {
         let (_, bytes) = self.order.places()?;
-        let more = renderers.iter().enumerate().map(|(number, renderer)| more(number, renderer)).collect::<Vec<_>>();
-        let count = renderers.len() + more.iter().map(Vec::len).sum::<usize>();
+        let more = renderers.iter().enumerate().flat_map(|(number, renderer)| more(number, renderer));
+        // One without pixels would only take the GPU's memory.
+        let more = more.take(that_fit(bytes).saturating_sub(renderers.len())).collect::<Vec<_>>();
+        let count = renderers.len() + more.len();
         let encoders = Encoders::new(encoders, count, list.len(), bytes)?;
-        let left = &Mutex::new(Left { frames: list.iter().copied().collect(), at_work: renderers.len() });
+        let frames = list.iter().copied().collect();
+        let left = &Mutex::new(Left { frames, at_work: renderers.len(), ..Left::default() });
         let render = |renderer: Renderer| {
+            let mut failing = Failing { failed: &self.failed, has_ended_well: false };
             let result = self.render_by(renderer, left, &encoders, progress);
-            self.failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            failing.has_ended_well = result.is_ok();
             result
         };
         let render = &render;
         let ended = std::thread::scope(|scope| {
             let first = renderers.into_iter().map(|renderer| scope.spawn(move || render(renderer)));
             let mut threads = first.collect::<Vec<_>>();
-            threads.extend(more.into_iter().flatten().map(|open| {
+            threads.extend(more.into_iter().map(|open| {
                 scope.spawn(move || {
+                    let is_over = self.failed.load(Ordering::Relaxed) || self.signals.has_come();
+                    if is_over || lock(left).frames.is_empty() {
+                        return Ok(());
+                    }
                     // One more helps, and is not needed: the machine may have no room for it.
                     let Some(renderer) = open() else { return Ok(()) };
                     {
@@ -131,7 +159,7 @@ impl Pictures<'_> {
         encoders: &Encoders,
         progress: &Progress,
     ) -> Result<(), Ending> {
-        let mut lost = 0;
+        let (mut lost, mut is_alone) = (0, false);
         let mut manifest = Manifest::read(&self.names.manifest());
         // Frames that other programs are making.
         let mut others = Vec::new();
@@ -172,9 +200,18 @@ impl Pictures<'_> {
             match self.frame(frame, file, claim, encoders, &mut renderer, &mut lost) {
                 Ok(made) => encoders.order(made)?,
                 // The others go on with the memory that this one has taken.
-                Err(ending) if ending.no_memory && lock(left).leave(frame) => {
-                    lock(left).frames.extend(others);
+                Err(ending) if ending.no_memory && lock(left).leave(frame, &mut others) => {
+                    drop(renderer);
+                    lock(left).leaving -= 1;
                     return Ok(());
+                }
+                // The last one has the memory of those that left, once they have given it back.
+                Err(ending) if ending.no_memory && !is_alone && lock(left).have_left > 0 => {
+                    while lock(left).leaving > 0 {
+                        std::thread::sleep(PATIENCE);
+                    }
+                    is_alone = true;
+                    lock(left).frames.push_front(frame);
                 }
                 Err(ending) => return Err(ending),
             }
@@ -259,13 +296,15 @@ mod tests {
 
     #[test]
     fn a_frame_is_left_to_others_only() {
-        let mut left = Left { frames: [1, 2].into(), at_work: 2 };
+        let mut left = Left { frames: [1, 2].into(), at_work: 2, ..Left::default() };
         assert_eq!(left.take(false), Some(1));
-        assert!(left.leave(1) && left.at_work == 1 && left.frames == [1, 2]);
+        assert!(left.leave(1, &mut vec![7]) && left.at_work == 1 && left.frames == [1, 2, 7]);
+        assert_eq!((left.have_left, left.leaving), (1, 1));
         assert_eq!(left.take(false), Some(1));
-        assert!(!left.leave(1) && left.at_work == 1 && left.frames == [2]);
+        let mut waited = vec![8];
+        assert!(!left.leave(1, &mut waited) && left.at_work == 1 && left.frames == [2, 7] && waited == [8]);
         // One that waits for frames of other programs is still at work.
-        assert_eq!((left.take(true), left.take(true), left.at_work), (Some(2), None, 1));
+        assert_eq!((left.take(true), left.take(true), left.take(true), left.at_work), (Some(2), Some(7), None, 1));
         assert_eq!((left.take(false), left.at_work), (None, 0));
     }
 }

@@ -16,8 +16,9 @@ use ::exr::meta::header::Header;
 use std::cell::Cell;
 use std::io::{Read, Seek};
 
-/// Errors: as those of `exr::read`, and UNSUPPORTED for a file of several parts, whose data window is not its display
-/// window, or with a channel of whole numbers.
+/// Errors: as those of `exr::read`, but that what is unpacked has the limit of memory only, because all of it is handed
+/// out; and UNSUPPORTED for a file of several parts, whose data window is not its display window, in tiles, or with a
+/// channel of whole numbers.
 pub(super) fn read(file: impl Read + Seek) -> Result<Channels> {
     let in_headers = Cell::new(true);
     let reader = block::read(HeaderLimiter::new(file, &in_headers), false).map_err(header_error)?;
