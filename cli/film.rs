@@ -3,7 +3,7 @@
 //! with it. Knows no codec.
 
 use crate::claim::Claim;
-use crate::encode::{Done, Encoders, Frame, Pixels};
+use crate::encode::{Done, Encoders, Frame, Pixels, lock};
 use crate::ending::Ending;
 use crate::frames::Names;
 use crate::manifest::{Fingerprint, Made, Manifest};
@@ -16,7 +16,7 @@ use crate::video::{Files, Running, Shape, Writer, spherical, try_ffmpeg};
 use bhr::renderer::Renderer;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 pub struct Film<'a> {
@@ -45,10 +45,6 @@ fn watch(running: &Running, signals: &Signals, over: &AtomicBool) {
         }
         std::thread::sleep(GLANCE);
     }
-}
-
-fn lock(writer: &Mutex<Writer>) -> MutexGuard<'_, Writer> {
-    writer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Film<'_> {

@@ -4,7 +4,7 @@
 //! killed at any time. Knows no video.
 
 use crate::claim::Claim;
-use crate::encode::{Done, Encoders, Frame, Written, that_fit};
+use crate::encode::{Done, Encoders, Frame, Written, lock, that_fit};
 use crate::ending::Ending;
 use crate::frames::Names;
 use crate::manifest::{Made, Manifest};
@@ -18,8 +18,8 @@ use bhr::scene_file::parameters;
 use std::collections::VecDeque;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long other programs' frames are waited for before they are looked at again.
@@ -81,10 +81,6 @@ impl Drop for Failing<'_> {
     fn drop(&mut self) {
         self.failed.fetch_or(!self.has_ended_well, Ordering::Relaxed);
     }
-}
-
-fn lock(left: &Mutex<Left>) -> MutexGuard<'_, Left> {
-    left.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A picture that is to be written.
