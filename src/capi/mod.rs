@@ -35,6 +35,7 @@ mod fields;
 mod state;
 mod call;
 pub mod context;
+pub mod chart;
 pub mod camera;
 pub mod disk;
 pub mod effects;
