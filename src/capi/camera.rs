@@ -2,13 +2,14 @@
 //! BhrCamera: the struct, the helpers that aim one, and setting, getting and advancing it.
 
 use super::call::on_context;
+use super::chart::{BhrChart, chart};
 use super::context::BhrContext;
 use super::entry::anywhere;
 use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_null, read_vector, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Number, Result};
-use crate::scene::{Camera, Eye, Frustum, Motion, Projection};
+use crate::scene::{Camera, Eye, Frustum, Motion, Projection, Transport};
 use glam::DVec3;
 
 /// The lens. Camera axes: right = forward x up, then up = right x forward.
@@ -33,9 +34,9 @@ pub const BHR_PROJECTION_FRUSTUM: BhrProjection = 4;
 /// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a
 /// frame or rays are asked for.
 pub type BhrMotion = i32;
-/// At rest; with spin, the zero angular momentum observer (ZAMO).
+/// At rest, outside the horizon; with spin, the zero angular momentum observer (ZAMO).
 pub const BHR_MOTION_STATIC: BhrMotion = 0;
-/// Falls radially from rest at infinity, inside a spin-0 horizon too.
+/// Falls from rest at infinity with E = 1 and L = Q = 0, inside the horizon too (with spin in chart RAIN).
 pub const BHR_MOTION_FREE_FALL: BhrMotion = 1;
 /// On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
 /// the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
@@ -51,6 +52,14 @@ pub const BHR_EYE_MIDDLE: BhrEye = 0;
 pub const BHR_EYE_LEFT: BhrEye = 1;
 /// The right eye.
 pub const BHR_EYE_RIGHT: BhrEye = 2;
+
+/// How bhr_camera_advance carries a camera's axes along. @since 0.2.0
+pub type BhrTransport = i32;
+/// Forward and up keep their angles to e_r, e_th and e_ph.
+pub const BHR_TRANSPORT_TRIAD: BhrTransport = 0;
+/// Forward and up stay parallel to themselves along the world line, as the axes of gyroscopes do. For cameras in free
+/// fall: FREE_FALL, ORBIT and VELOCITY.
+pub const BHR_TRANSPORT_PARALLEL: BhrTransport = 1;
 
 /// The camera: an observer with a lens. Positions and axes in scene axes and lengths.
 #[repr(C)]
@@ -73,8 +82,8 @@ pub struct BhrCamera {
     pub motion: BhrMotion,
     /// Reserved: 0.
     pub reserved: u32,
-    /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
-    /// direction given at position. Default 0.
+    /// For BHR_MOTION_VELOCITY: v / c against the observer of the chart's triad (by default the local static one, the
+    /// ZAMO), |v| < 1; components as for a direction given at position. Default 0.
     pub velocity: [f64; 3],
     /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
     /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them. @since 0.2.0
@@ -97,12 +106,18 @@ pub struct BhrCamera {
     pub eye: BhrEye,
     /// Reserved: 0. @since 0.2.0
     pub reserved2: u32,
+    /// BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths
+    /// and points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that
+    /// is to go there is told in it from its begin. Default STATIC. @since 0.2.0
+    pub chart: BhrChart,
+    /// BHR_TRANSPORT_*. Default TRIAD. @since 0.2.0
+    pub transport: BhrTransport,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrCamera {
     const NAME: &'static str = "BhrCamera";
-    const SIZES: &'static [usize] = &[120, 184];
+    const SIZES: &'static [usize] = &[120, 184, 192];
     fn defaults() -> Self {
         Camera::default().into()
     }
@@ -128,6 +143,8 @@ impl From<Camera> for BhrCamera {
             eye_distance: camera.eye_distance,
             eye: camera.eye as BhrEye,
             reserved2: 0,
+            chart: camera.chart as BhrChart,
+            transport: camera.transport as BhrTransport,
         }
     }
 }
@@ -148,12 +165,22 @@ impl TryFrom<BhrCamera> for Camera {
             jitter: given.jitter.into(),
             eye_distance: given.eye_distance,
             eye: eye(given.eye)?,
+            chart: chart(given.chart, "camera")?,
+            transport: transport(given.transport)?,
         };
         check_reserved(given.reserved, "camera")?;
         check_reserved(given.reserved2, "camera")?;
         camera.check()?;
         Ok(camera)
     }
+}
+
+fn transport(value: BhrTransport) -> Result<Transport> {
+    Ok(match value {
+        BHR_TRANSPORT_TRIAD => Transport::Triad,
+        BHR_TRANSPORT_PARALLEL => Transport::Parallel,
+        _ => return unknown(value, "camera transport", "BHR_TRANSPORT_TRIAD (0) and BHR_TRANSPORT_PARALLEL (1)"),
+    })
 }
 
 fn projection(value: BhrProjection) -> Result<Projection> {
@@ -291,12 +318,14 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
 }
 
 /// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
-/// STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
-/// stays where it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time
-/// that went by: add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless
-/// (docs/cameras.md).
+/// STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, and a VELOCITY one falls freely from its velocity,
+/// which changes. BhrCamera.transport says how axes are carried along. The context's own camera stays where it is,
+/// and on failure so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that
+/// went by: add it to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in
+/// STATIC too (docs/cameras.md).
 /// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
-/// ends in the centre or, with spin, at the horizon; UNSUPPORTED for VELOCITY.
+/// ends before: in the centre, at r- (1 + 1e-6), or in chart STATIC at the horizon; UNSUPPORTED for a STATIC camera
+/// with PARALLEL axes, and for more than 300,000 steps (some 10^5 M at r = 10 M).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(
     context: *const BhrContext,

@@ -99,14 +99,16 @@ pub struct BhrHoleInfo {
     pub shadow_angular_radius: f64,
     /// Boyer-Lindquist r of the camera.
     pub camera_radius: f64,
-    /// d tau / d t, the rate of the clock of the camera's observer.
+    /// d tau / d t, the rate of the clock of the camera's observer; t is the time of BhrCamera.chart.
     pub camera_time_rate: f64,
+    /// r- = M - sqrt(M^2 - a^2), down to which the inside of a spinning hole is known; 0 without spin. @since 0.2.0
+    pub inner_horizon_radius: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrHoleInfo {
     const NAME: &'static str = "BhrHoleInfo";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[88, 96];
     fn defaults() -> Self {
         Self {
             struct_size: 0,
@@ -121,6 +123,7 @@ unsafe impl Versioned for BhrHoleInfo {
             shadow_angular_radius: 0.0,
             camera_radius: 0.0,
             camera_time_rate: 0.0,
+            inner_horizon_radius: 0.0,
         }
     }
 }
@@ -140,6 +143,7 @@ impl From<HoleInfo> for BhrHoleInfo {
             shadow_angular_radius: info.shadow_angular_radius,
             camera_radius: info.camera_radius,
             camera_time_rate: info.camera_time_rate,
+            inner_horizon_radius: info.inner_horizon_radius,
         }
     }
 }

@@ -22,7 +22,7 @@ pub struct BhrRay {
     /// Scene axes and lengths.
     pub position: [f64; 3],
     /// The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
-    /// are along the frame that Directions, above, gives.
+    /// are along the frame that Directions, above, gives, in the chart of the context's camera.
     pub direction: [f64; 3],
     /// nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies the hit's
     /// redshifts.
@@ -40,12 +40,13 @@ const _: () = assert!(BHR_MAX_CROSSINGS == MAX_CROSSINGS);
 pub struct BhrCrossing {
     /// Boyer-Lindquist r, scene lengths.
     pub radius: f64,
-    /// Boyer-Lindquist ph in the chart, (-pi, pi].
+    /// Boyer-Lindquist ph in the chart, (-pi, pi], of rays in chart RAIN too.
     pub azimuth: f64,
     /// g = nu(camera) / nu(emitter on the disk's circular orbit); inside the ISCO that of falling matter with
     /// BHR_DISK_PLUNGES, else NaN.
     pub redshift: f64,
-    /// Coordinate time since the photon left, scene lengths; NaN from inside the horizon.
+    /// Coordinate time since the photon left, scene lengths; NaN from inside the horizon. In chart RAIN: rain time T
+    /// at the ray's begin less the coordinate time t at which the photon left.
     pub delay: f64,
 }
 

@@ -98,8 +98,8 @@ impl<'a> Recorder<'a> {
             let (media, medium) = (Media::new(), Medium::default());
             // Aberration makes angles as much smaller as frequencies larger.
             let pixel_angle = self.lens.mapping.pixel_angle * frequency_ratio;
-            let static_lapse = observer.frame.static_lapse();
-            let seen = Seen { frequency_ratio, static_lapse, pixel_angle, swept: 0.0, rays };
+            let static_observer = observer.frame.static_observer();
+            let seen = Seen { frequency_ratio, static_observer, pixel_angle, swept: 0.0, rays };
             let limit = self.limit(x, y);
             let mut along = MediaAlong { emitters, seen, plane_u, media, medium, limit };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);

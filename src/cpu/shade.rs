@@ -86,7 +86,7 @@ impl<'a> Shader<'a> {
             if shown.is_some_and(|shown| !shown.shows(crossing, eye)) {
                 continue;
             }
-            let gravity = || nu_static_observer(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
+            let gravity = || nu_static_observer(self.lens, here) / self.nu_zamo_in_plane(crossing.u, here);
             let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
             let emission =
                 self.plane.at_crossing(crossing, self.scene.effects.visible_shift(crossing.g, gravity), mu, open);
@@ -113,7 +113,7 @@ impl<'a> Shader<'a> {
     }
 
     fn sky_light(&self, here: &Record) -> [f64; 3] {
-        let gravity = || nu_static_observer(self.lens, here.energy) / here.energy;
+        let gravity = || nu_static_observer(self.lens, here) / here.energy;
         let shift = self.scene.effects.visible_shift(here.sky_redshift, gravity);
         let d = self.chart_to_sky * here.direction;
         // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings
@@ -152,7 +152,7 @@ impl<'a> Shader<'a> {
                 (None, Fate::Unresolved | Fate::Hidden) => f64::NAN,
             },
             (View::Deflection, Fate::Escaped) => {
-                let look = self.lens.observer.frame.vector(self.lens.look_direction(x, y));
+                let look = self.lens.placed(self.lens.look_direction(x, y));
                 look.cross(here.direction).length().atan2(look.dot(here.direction))
             }
             (View::Deflection, _) => f64::NAN,
@@ -169,8 +169,9 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// nu(static observer or ZAMO where the camera is), for E scaled to nu_local = 1; in the rain frame inside the horizon,
-/// its own.
-fn nu_static_observer(lens: &Lens, energy: f64) -> f64 {
-    lens.observer.frame.static_lapse().map_or(1.0, |lapse| energy / lapse)
+/// nu(static observer or ZAMO where the camera is), for E and L scaled to nu_local = 1; in the rain frame inside the
+/// horizon, its own.
+fn nu_static_observer(lens: &Lens, ray: &Record) -> f64 {
+    let observer = lens.observer.frame.static_observer();
+    observer.map_or(1.0, |observer| observer.frequency(ray.energy, ray.angular_momentum))
 }

@@ -102,7 +102,7 @@ impl<'a, 'b> Layers<'a, 'b> {
         let moves = nu > 0.0 && nu.is_finite() && u == there.u;
         let (g, nu) = if moves { (self.frequency_ratio / nu, nu) } else { (1.0, 0.0) };
         let delay = if self.when.delayed { c.retardation(self.part.observer, &there) } else { 0.0 };
-        let azimuth = there.n.y.atan2(there.n.x) + there.drag;
+        let azimuth = c.matter_azimuth(&there);
         let seen = CloudPlace { r, cos, azimuth, later: self.when.reference_delay - delay };
         let [turns, row, _] = self.clouds.place(&volume.cloud, &seen, Carried::new(velocity, c.a, &at));
         let cloud = &volume.cloud;

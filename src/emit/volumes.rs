@@ -24,6 +24,7 @@ use super::volume::{Shape, Volume};
 use crate::error::Result;
 use crate::physics::flow::{Place, Velocity, ZamoLight};
 use crate::physics::geodesic::{Constants, State};
+use crate::physics::observer::StaticObserver;
 use crate::physics::quadrature::{GAUSS_NODES, GAUSS_WEIGHTS};
 use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
@@ -57,8 +58,8 @@ const MOST_BENDS: usize = BENDS * Volume::MOST;
 pub struct Seen {
     /// nu(camera) / nu(local frame).
     pub frequency_ratio: f64,
-    /// `LocalFrame::static_lapse`.
-    pub static_lapse: Option<f64>,
+    /// `LocalFrame::static_observer`.
+    pub static_observer: Option<StaticObserver>,
     /// The angle of a pixel, in the local frame: finer structure is left out. 0: none is.
     pub pixel_angle: f64,
     /// The angle about the hole that the ray has swept so far.
@@ -341,7 +342,7 @@ impl Volumes {
         let mut moment = || {
             *moment.get_or_insert_with(|| {
                 let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
-                (there.n.y.atan2(there.n.x) + there.drag, self.when.reference_delay - delay)
+                (c.matter_azimuth(there), self.when.reference_delay - delay)
             })
         };
         let mut add = |light: &ZamoLight, velocity: Velocity, glow: &Glow, density: f64, heat: f64| {
@@ -349,7 +350,8 @@ impl Volumes {
             // No motion has such a frequency where this fails; NaN fails it as well.
             if nu > 0.0 && nu.is_finite() {
                 let g = seen.frequency_ratio / nu;
-                let camera = seen.static_lapse.map_or(c.nu_local, |lapse| c.energy / lapse);
+                let at_camera = |o: StaticObserver| o.frequency(c.energy, c.angular_momentum);
+                let camera = seen.static_observer.map_or(c.nu_local, at_camera);
                 let shift = self.effects.visible_shift(g, || camera / light.frequency);
                 sum.add(glow.coefficients(density, heat, r, nu, g, shift));
             }

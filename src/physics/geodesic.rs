@@ -33,7 +33,7 @@
 //! ```
 
 use super::orbit::{horizon_inner, horizon_outer};
-use super::rain::offsets;
+use super::rain::{OffsetSeries, Offsets, offsets};
 use glam::DVec3;
 
 /// The time that `State::delay` integrates, and the azimuth that `State::drag` leads to.
@@ -90,6 +90,8 @@ pub struct Constants {
     pub r_plus: f64,
     pub r_minus: f64,
     pub clock: Clock,
+    /// By rain time about a spinning hole: how the offsets of its chart are found; `None`: by their integrals.
+    pub offsets: Option<OffsetSeries>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -134,6 +136,7 @@ impl Constants {
             r_plus: horizon_outer(a),
             r_minus: horizon_inner(a),
             clock: Clock::Coordinate,
+            offsets: None,
         }
     }
 
@@ -334,8 +337,26 @@ impl Constants {
         match self.clock {
             Clock::Coordinate => 0.0,
             Clock::Rain if self.a == 0.0 => rain_offset(u, 1.0 - 2.0 * u),
-            Clock::Rain => offsets(self.a, u).time,
+            Clock::Rain => self.chart_offsets(u).time,
         }
+    }
+
+    /// Those of Doran's chart about a spinning hole at u, outside the horizon.
+    fn chart_offsets(&self, u: f64) -> Offsets {
+        match &self.offsets {
+            Some(series) => series.at(u, 1.0 - self.r_plus * u),
+            None => offsets(self.a, u),
+        }
+    }
+
+    /// The azimuth of Boyer and Lindquist's chart, in which matter moves, at a state outside the horizon: any of those
+    /// that are whole turns apart.
+    pub fn matter_azimuth(&self, there: &State) -> f64 {
+        let azimuth = there.n.y.atan2(there.n.x) + there.drag;
+        if self.clock == Clock::Coordinate || self.a == 0.0 {
+            return azimuth;
+        }
+        azimuth - self.chart_offsets(there.u).azimuth
     }
 
     /// The clock's time at the observer less the t at which light left `there`, outside the horizon: matter keeps t.
@@ -348,11 +369,6 @@ impl State {
     /// The chart direction of this point from the hole: N, normalised, turned by the drag.
     pub fn chart_direction(&self) -> DVec3 {
         turned(self.n.normalize(), self.drag)
-    }
-
-    /// Chart azimuth in (-pi, pi].
-    pub fn azimuth(&self) -> f64 {
-        wrap_angle(self.n.y.atan2(self.n.x) + self.drag)
     }
 }
 

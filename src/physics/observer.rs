@@ -21,10 +21,11 @@
 //! sin d = -sqrt(2 r) a s / (rho Q),   cos d = sqrt(r^2 + a^2) / Q,   Q = sqrt(g_phph) / s
 //! ```
 
-use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State, turned};
+use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State, rain_offset, turned};
 use super::orbit::{circular_orbit, horizon_inner, horizon_outer, innermost_radius, zamo_omega};
+use super::rain::{OffsetSeries, offsets};
 use crate::error::{Error, Number, Result};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Below this E (at nu_local = 1) rays keep nu_local = 1: E = 1 would scale K and L beyond use, and E <= 0 turn tau
 /// round.
@@ -46,6 +47,23 @@ pub struct LocalFrame {
     pub rain: bool,
     /// Lapse of the ZAMO, alpha = sqrt(Sigma Delta / A); NaN for rain.
     pub lapse: f64,
+    /// `Constants::offsets` of the frame's rays.
+    pub offsets: Option<OffsetSeries>,
+}
+
+/// The static observer (the ZAMO) at the place of a rain frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticObserver {
+    pub lapse: f64,
+    /// omega, the angular velocity of the ZAMO.
+    pub angular_velocity: f64,
+}
+
+impl StaticObserver {
+    /// The frequency that this observer measures: (E - omega L) / alpha.
+    pub fn frequency(&self, energy: f64, angular_momentum: f64) -> f64 {
+        (energy - self.angular_velocity * angular_momentum) / self.lapse
+    }
 }
 
 /// E and L of light along look directions n (components) of one frame, at nu_local = 1: affine in n, as tetrads are
@@ -156,6 +174,7 @@ impl LocalFrame {
             e_phi: DVec3::new(-sin_phi, cos_phi, 0.0),
             rain,
             lapse: f64::NAN,
+            offsets: None,
         };
         Ok(if rain { frame } else { Self { lapse: frame.zamo_lapse(), ..frame } })
     }
@@ -198,6 +217,25 @@ impl LocalFrame {
         Self { e_r, e_theta, e_phi, ..self }
     }
 
+    /// The static observer's (the ZAMO's) frame at the place of this rain frame outside the horizon: that place has
+    /// another azimuth in the chart of Boyer and Lindquist.
+    pub fn to_static(self) -> Self {
+        debug_assert!(self.rain && self.r > horizon_outer(self.a));
+        let there = if self.a == 0.0 { self } else { self.turned(-offsets(self.a, 1.0 / self.r).azimuth) };
+        Self { rain: false, lapse: self.zamo_lapse(), ..there }
+    }
+
+    /// This rain frame for many rays, that tell azimuths and times of matter by the series of the chart's offsets.
+    pub fn with_offset_series(self) -> Self {
+        Self { offsets: (self.a != 0.0).then(|| OffsetSeries::new(self.a)), ..self }
+    }
+
+    /// Rain time less t here, M, by the integral; outside the horizon.
+    pub fn rain_time_offset(&self) -> f64 {
+        let u = 1.0 / self.r;
+        if self.a == 0.0 { rain_offset(u, (self.r - 2.0) / self.r) } else { offsets(self.a, u).time }
+    }
+
     /// sqrt(Sigma Delta / A), the ZAMO's lapse; NaN at or inside the horizon.
     fn zamo_lapse(&self) -> f64 {
         let (a, r) = (self.a, self.r);
@@ -227,6 +265,12 @@ impl LocalFrame {
         }
         let squared = 1.0 - 2.0 / self.r;
         (self.rain && squared > 0.0).then(|| squared.sqrt())
+    }
+
+    /// The static observer where the frame is that of the rain observer; `None` as for `static_lapse`.
+    pub fn static_observer(&self) -> Option<StaticObserver> {
+        let lapse = self.static_lapse()?;
+        Some(StaticObserver { lapse, angular_velocity: zamo_omega(self.a, self.r, self.sin) })
     }
 
     /// Components (n_r, n_th, n_ph) of a chart vector.
@@ -331,6 +375,7 @@ impl LocalFrame {
         let carter = self.carter(&DoranMomentum { energy, polar: m.polar * e, around: m.around * e, ..m }, 0.0);
         let mut constants = Constants::new(a, energy, self.sin * (m.around * e), carter, e, 1.0 / self.r);
         constants.clock = self.clock();
+        constants.offsets = self.offsets;
         Some((constants, self.state(&m, e)))
     }
 
@@ -427,14 +472,40 @@ impl Observer {
         Self { frame, beta: DVec3::ZERO, gamma: 1.0 }
     }
 
-    /// Falls radially from rest at infinity. Spin 0: at rest in the rain frame, at any r. With spin: E = 1, L = Q = 0,
-    /// so that gamma = 1 / alpha against the ZAMO and th stays.
+    /// Falls radially from rest at infinity: E = 1, L = Q = 0, so that th stays. Spin 0: at rest in the rain frame, at any
+    /// r. With spin: against the ZAMO.
     pub fn free_fall(frame: LocalFrame) -> Self {
         if frame.a == 0.0 {
             return Self::at_rest(frame.to_rain());
         }
+        Self::rain_against(frame)
+    }
+
+    /// The rain observer as the static one (the ZAMO) of `frame` has it: gamma = 1 / alpha.
+    pub fn rain_against(frame: LocalFrame) -> Self {
         let speed = ((1.0 - frame.lapse) * (1.0 + frame.lapse)).sqrt();
         Self { frame, beta: DVec3::new(-speed, 0.0, 0.0), gamma: 1.0 / frame.lapse }
+    }
+
+    /// This observer against the frame in which its own frame moves at the velocity of `carrier`, and the turn between
+    /// their axes: n in the axes of `self` is turn * n in those of the result, both boosted without rotation.
+    ///
+    /// Two boosts make a boost and a turn (Thomas 1926; Wigner 1939). With spinors, exp(eta / 2 v.sigma), and T = gamma
+    /// beta / (gamma + 1), which is tanh(eta / 2) v: the half angle of the turn has the tangent |T1 x T2| / (1 + T1.T2).
+    pub fn carried_by(&self, carrier: &Self) -> (Self, DMat3) {
+        let half = |observer: &Self| observer.beta * (observer.gamma / (observer.gamma + 1.0));
+        let (first, second) = (half(carrier), half(self));
+        let axis = first.cross(second) / (1.0 + first.dot(second));
+        let turn = match axis.length() {
+            0.0 => DMat3::IDENTITY,
+            tangent => DMat3::from_axis_angle(axis / tangent, 2.0 * tangent.atan()),
+        };
+        let momentum = self.beta * self.gamma;
+        let along = carrier.beta.dot(momentum);
+        let gamma = carrier.gamma * self.gamma + carrier.gamma * along;
+        let factor = carrier.gamma * carrier.gamma / (carrier.gamma + 1.0) * along + carrier.gamma * self.gamma;
+        let beta = (momentum + carrier.beta * factor) / gamma;
+        (Self { frame: carrier.frame, beta, gamma }, turn)
     }
 
     /// The largest |cos(theta)| that counts as in the equatorial plane: places that were computed, as r cos(pi / 2),

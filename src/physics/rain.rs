@@ -13,6 +13,7 @@
 use super::orbit::{horizon_inner, horizon_outer};
 use super::quadrature::gauss_legendre;
 use glam::DVec2;
+use std::f64::consts::PI;
 
 /// The greatest width of a panel of the quadrature in s (`offsets`), which leaves 1e-13 of the integrals.
 const PANEL: f64 = 1.0 / 32.0;
@@ -66,9 +67,114 @@ pub fn offsets(a: f64, u: f64) -> Offsets {
     Offsets { azimuth: -root * sum.x, time: root / v - root * sum.y }
 }
 
+/// Terms of the polynomials of `OffsetSeries`.
+pub const OFFSET_TERMS: usize = 24;
+
+/// `offsets` of a hole of spin |a| < 1 for frames, which ask for them at many places: with poles of D apart
+///
+/// ```text
+/// 1 / D = (r+ / (1 - r+ u) - r- / (1 - r- u)) / (r+ - r-)
+/// ```
+///
+/// the integrals over v of g / D, g = a u / q and 2 - a^2 u + a^2 u / (1 + q), are
+///
+/// ```text
+/// (sqrt(r+) g(1/r+) artanh(sqrt(r+) v) - sqrt(r-) g(1/r-) artanh(sqrt(r-) v)) / (r+ - r-) + P(v)
+/// ```
+///
+/// where P is smooth up to the horizon: a series of Chebyshev polynomials, one for the azimuth (x) and one for the
+/// time (y). The error is 1e-11 up to |a| = 0.9999.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OffsetSeries {
+    r_minus: f64,
+    /// sqrt(r+), sqrt(r-).
+    roots: [f64; 2],
+    /// What artanh(sqrt(r+) v) and artanh(sqrt(r-) v) are multiplied by.
+    poles: [DVec2; 2],
+    /// The coefficients of P in 2 v / v+ - 1.
+    terms: [DVec2; OFFSET_TERMS],
+}
+
+impl OffsetSeries {
+    pub fn new(a: f64) -> Self {
+        let (r_plus, r_minus) = (horizon_outer(a), horizon_inner(a));
+        let roots = [r_plus.sqrt(), r_minus.sqrt()];
+        let (a2, apart) = (a * a, 2.0 * ((1.0 - a) * (1.0 + a)).sqrt());
+        let g = |u: f64| {
+            let q = (1.0 + a2 * u * u).sqrt();
+            DVec2::new(a * u / q, 2.0 - a2 * u + a2 * u / (1.0 + q))
+        };
+        let at_outer = g(1.0 / r_plus);
+        // a / r- = r+ / a.
+        let root = a.hypot(r_plus);
+        let at_inner = DVec2::new(r_plus.copysign(a) / root, 2.0 - r_plus + r_plus * a.abs() / (a.abs() + root));
+        let rest = |u: f64| {
+            let value = g(u);
+            ((value - at_outer) * (r_plus / (1.0 - r_plus * u)) - (value - at_inner) * (r_minus / (1.0 - r_minus * u)))
+                / apart
+        };
+        // The interpolant of P' at the Chebyshev nodes, integrated term by term: T_k gives T_(k+1) / (2 k + 2) and
+        // -T_(k-1) / (2 k - 2).
+        let slopes: [DVec2; OFFSET_TERMS] = std::array::from_fn(|k| {
+            let node = |i: usize| (i as f64 + 0.5) * PI / OFFSET_TERMS as f64;
+            let sum = (0..OFFSET_TERMS).fold(DVec2::ZERO, |sum, i| {
+                let v = 0.5 * (1.0 + node(i).cos()) / roots[0];
+                sum + rest(v * v) * (k as f64 * node(i)).cos()
+            });
+            sum * (2.0 / OFFSET_TERMS as f64)
+        });
+        let slope = |k: usize| slopes.get(k).copied().unwrap_or_default();
+        let half_width = 0.5 / roots[0];
+        let mut terms: [DVec2; OFFSET_TERMS] = std::array::from_fn(|k| match k {
+            0 => DVec2::ZERO,
+            _ => (slope(k - 1) - slope(k + 1)) * (half_width / (2.0 * k as f64)),
+        });
+        // P(0) = 0, where T_k is 1 and -1 in turns.
+        terms[0] =
+            (1..OFFSET_TERMS).fold(DVec2::ZERO, |sum, k| if k % 2 == 0 { sum - terms[k] } else { sum + terms[k] });
+        Self { r_minus, roots, poles: [at_outer * (roots[0] / apart), at_inner * (-roots[1] / apart)], terms }
+    }
+
+    /// The offsets at 1/r = `u`. `outer`: 1 - r+ u > 0, which callers beside the horizon know better than `u` tells.
+    pub fn at(&self, u: f64, outer: f64) -> Offsets {
+        let v = u.sqrt();
+        let [outer_root, inner_root] = self.roots;
+        // artanh(x) = ln((1 + x)^2 / (1 - x^2)) / 2.
+        let artanh = |root: f64, rest: f64| 0.5 * ((1.0 + root * v).powi(2) / rest).ln();
+        let logs =
+            self.poles[0] * artanh(outer_root, outer) + self.poles[1] * artanh(inner_root, 1.0 - self.r_minus * u);
+        // Clenshaw 1955.
+        let x = 2.0 * v * outer_root - 1.0;
+        let (mut next, mut after) = (DVec2::ZERO, DVec2::ZERO);
+        for term in self.terms.iter().skip(1).rev() {
+            (next, after) = (*term + next * (2.0 * x) - after, next);
+        }
+        let sum = logs + self.terms[0] + next * x - after;
+        let root = 8.0_f64.sqrt();
+        Offsets { azimuth: -root * sum.x, time: root / v - root * sum.y }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn series_are_the_integrals() {
+        let mut worst: f64 = 0.0;
+        for a in [0.0, 1e-9, 0.1, -0.5, 0.9, -0.998, 0.9999, -0.9999_f64] {
+            let (series, r_plus) = (OffsetSeries::new(a), horizon_outer(a));
+            for r in [1.0 + 1e-9, 1.0001, 1.01, 1.3, 2.0, 4.0, 30.0, 1e4, 1e9].map(|x| x * r_plus) {
+                let (found, expected) = (series.at(1.0 / r, (r - r_plus) / r), offsets(a, 1.0 / r));
+                let size = expected.azimuth.abs() + 1.0;
+                let error = ((found.azimuth - expected.azimuth) / size).abs();
+                let late = ((found.time - expected.time) / expected.time.abs().max(1.0)).abs();
+                worst = worst.max(error.max(late) / (1.0 + 1e-5 * r_plus / (r - r_plus)));
+            }
+        }
+        println!("series of offsets: {worst:.1e}");
+        assert!(worst < 1e-11, "{worst:.1e}");
+    }
 
     /// Without spin H has a closed form (`geodesic::rain_offset`, here by Martel & Poisson 2001, eq. 2.5).
     #[test]

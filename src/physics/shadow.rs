@@ -17,7 +17,8 @@ pub struct Shadow {
     pub center: DVec3,
 }
 
-/// The spin-0 shadow, a circle for every observer: Synge 1966 for the static one, aberrated for a moving one.
+/// The spin-0 shadow, a circle for every observer: Synge 1966 for the static one, aberrated for a moving one; inside
+/// the horizon that of the rain observer is aberrated.
 ///
 /// Look directions n on a circle about k, n.k = cos psi, are the null vectors (1, n) orthogonal to the unit space-like
 /// vector S = (cos psi, k) / sin psi; a boost takes S to S', whose time part is cot psi' and whose space part points
@@ -25,10 +26,7 @@ pub struct Shadow {
 pub fn shadow(observer: &Observer) -> Shadow {
     let r = observer.frame.r;
     let inward = DVec3::NEG_X;
-    if observer.frame.rain {
-        return Shadow { radius: rain_shadow_radius(r), center: inward };
-    }
-    let (sin, cos) = critical_direction(r, false);
+    let (sin, cos) = critical_direction(r, observer.frame.rain);
     let (cot, k) = (cos / sin, inward / sin);
     let (beta, gamma) = (observer.beta, observer.gamma);
     let time = gamma * (cot + beta.dot(k));

@@ -4,7 +4,7 @@
 //!
 //! Lengths and times are in M, u = 1/r, tau is Mino time, and steps are measured in sigma = S tau (`Constants::scale`).
 
-use super::geodesic::{Constants, State};
+use super::geodesic::{Constants, State, wrap_angle};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};
 use super::observer::LocalFrame;
 use super::plunge::Matter;
@@ -68,7 +68,7 @@ pub enum Fate {
 pub struct PlaneCrossing {
     /// 1/r.
     pub u: f64,
-    /// Azimuth in the chart, in (-pi, pi].
+    /// Azimuth in Boyer and Lindquist's chart, in (-pi, pi].
     pub azimuth: f64,
     /// The time from the crossing to the observer (`Constants::retardation`); 0 unless `Settings::delay`.
     pub delay: f64,
@@ -410,7 +410,7 @@ pub(crate) fn find_crossing(
         return None;
     }
     let delay = if s.delay { c.retardation(observer, &state) } else { 0.0 };
-    Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order, du: state.du }, h))
+    Some((PlaneCrossing { u: state.u, azimuth: wrap_angle(c.matter_azimuth(&state)), delay, order, du: state.du }, h))
 }
 
 /// Traces along the look direction `n` (unit, components in `frame`). Where no light can come from that direction it

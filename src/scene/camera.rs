@@ -2,6 +2,7 @@
 //! The camera: an observer with a lens. It checks only itself; a motion that the hole does not allow is found when a
 //! frame is asked for (`scene::observer`).
 
+use super::chart::Chart;
 use super::hole::unit;
 use crate::error::{Error, Number, Result};
 use glam::{DMat3, DVec2, DVec3};
@@ -99,6 +100,17 @@ impl Motion {
     }
 }
 
+/// How a camera's axes are carried along its world line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Transport {
+    /// They keep their angles to the chart's triad at the camera.
+    #[default]
+    Triad = 0,
+    /// They stay parallel to themselves along a world line in free fall, as those of gyroscopes do.
+    Parallel = 1,
+}
+
 /// Position and axes in scene axes and lengths. `forward` and `up` keep the length the host gave them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -113,7 +125,7 @@ pub struct Camera {
     /// Default pi / 4.
     pub fov_y: f64,
     pub motion: Motion,
-    /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).
+    /// v / c against the observer of the chart's triad, |v| < 1; components as for a direction given at `position` (bhr.h).
     pub velocity: DVec3,
     /// The borders of a `Frustum`'s picture. Default: 45 degrees each way.
     pub frustum: Frustum,
@@ -122,6 +134,10 @@ pub struct Camera {
     /// The eye that an `Equirect` picture is for, and the distance of the eyes, scene lengths.
     pub eye: Eye,
     pub eye_distance: f64,
+    /// The chart of `position`, of directions and of times; also that of the rays and points that the scene is asked
+    /// for.
+    pub chart: Chart,
+    pub transport: Transport,
 }
 
 impl Default for Camera {
@@ -139,6 +155,8 @@ impl Default for Camera {
             jitter: DVec2::ZERO,
             eye: Eye::Middle,
             eye_distance: 0.0,
+            chart: Chart::Static,
+            transport: Transport::Triad,
         }
     }
 }

@@ -2,6 +2,7 @@
 //! The scene itself: everything that a frame depends on but its size.
 
 use super::camera::Camera;
+use super::chart::Chart;
 use super::film::Film;
 use super::frame::Region;
 use super::hole::Hole;
@@ -21,7 +22,7 @@ use crate::emit::volumes::Volumes;
 use crate::emit::{Emitters, Needs};
 use crate::error::{Error, Result};
 use crate::image::PixelFormat;
-use crate::physics::geodesic::{Clock, rain_offset};
+use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarField, StarIndex};
 use arrayvec::ArrayVec;
@@ -223,16 +224,21 @@ impl Scene {
     fn when(&self) -> When {
         let delayed = self.effects.has(Effects::LIGHT_DELAY);
         let observer = self.observer().ok().map(|o| o.frame).filter(|_| delayed);
+        let chart = self.camera.chart;
         let reference_delay = observer.map_or(0.0, |observer| observer.r);
         // A tiny mass can make the time infinite.
         let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
-            + observer.map_or(0.0, |observer| clock_advance(&observer));
+            + observer.map_or(0.0, |observer| clock_advance(&observer, chart));
         When { time, reference_delay, delayed }
     }
 }
 
-/// The clock of the observer's delays less the scene's time there: H where that is still t.
-fn clock_advance(observer: &LocalFrame) -> f64 {
-    let outside = observer.clock() == Clock::Rain && observer.r > 2.0;
-    if outside { rain_offset(1.0 / observer.r, (observer.r - 2.0) / observer.r) } else { 0.0 }
+/// The clock of an observer's delays less the time that the scene has in `chart` there, M: rain time less t, where one
+/// is by the first and the other by the second.
+pub(super) fn clock_advance(observer: &LocalFrame, chart: Chart) -> f64 {
+    match (chart, observer.clock()) {
+        (Chart::Static, Clock::Rain) if observer.r > 2.0 => observer.rain_time_offset(),
+        (Chart::Rain, Clock::Coordinate) => -observer.rain_time_offset(),
+        _ => 0.0,
+    }
 }

@@ -53,8 +53,8 @@ pub fn transfer_ray(scene: &Scene, setup: &TransferSetup, ray: &Ray) -> Transfer
     };
     let own = (setup.emitters.volumes.has_structure() && frame.r != setup.r).then(|| emitters_from(scene, frame.r));
     let emitters = own.as_ref().and_then(|own| own.as_ref().ok()).unwrap_or(&setup.emitters);
-    let (frequency_ratio, static_lapse) = (ray.frequency_ratio, frame.static_lapse());
-    let seen = Seen { frequency_ratio, static_lapse, pixel_angle: 0.0, swept: 0.0, rays: 1 };
+    let (frequency_ratio, static_observer) = (ray.frequency_ratio, frame.static_observer());
+    let seen = Seen { frequency_ratio, static_observer, pixel_angle: 0.0, swept: 0.0, rays: 1 };
     let (media, medium) = (Media::new(), Medium::default());
     let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium, limit: None };
     let traced = trace_visited(&constants, &state, &setup.settings, &mut along);
@@ -90,13 +90,14 @@ const MAX_PATH: usize = 1 << 16;
 
 /// The curve a ray follows, from the observer: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most
 /// (65536 in any case), evenly spaced in Mino time, the last one its end: just outside the horizon, or, for a ray that
-/// escapes, at ten times the observer's radius, but at least 1000 M. Errors: INVALID_ARGUMENT for a ray that is not
+/// escapes, at ten times the observer's radius, but at least 1000 M. Places and times are those of the camera's chart.
+/// Errors: INVALID_ARGUMENT for a ray that is not
 /// valid; OUT_OF_MEMORY.
 pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
     let Some((frame, start)) = scene.start(ray) else {
         return Err(Error::argument(
             "ray is not valid: position, direction and frequency_ratio (> 0) must be finite, the direction not zero, \
-             and the position outside a spinning hole's horizon",
+             and the position one where the camera's chart has observers",
         ));
     };
     let observer = ray.position;

@@ -28,12 +28,14 @@ pub mod output;
 pub mod query;
 pub mod trace;
 pub mod project;
+#[cfg(test)]
+mod rain_tests;
 
 pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
 pub use crate::emit::effects::Effects;
 pub use crate::emit::hot_spot::HotSpot;
 pub use crate::emit::volume::{FlowLaw, Shape, Volume};
-pub use camera::{Camera, Eye, Frustum, Motion, Projection};
+pub use camera::{Camera, Eye, Frustum, Motion, Projection, Transport};
 pub use chart::Chart;
 pub use content::{Scene, SkyPicture, View};
 pub use film::{ColourMap, Film, ToneMap};

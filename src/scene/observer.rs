@@ -2,10 +2,13 @@
 //! Converts the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks
 //! through a pixel. The only place that converts; both tracers and the queries build on it.
 
+use super::chart::Chart;
+use super::content::clock_advance;
 use super::hole::unit;
 use super::projection::Mapping;
 use super::{Camera, Motion, Region, Scene};
 use crate::error::{Error, Number, Result};
+use crate::physics::geodesic::{Clock, RAIN_CLOCK_RADIUS};
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use glam::{DMat3, DVec2, DVec3};
@@ -18,16 +21,7 @@ impl Scene {
     /// The local frame at a place given in scene axes and lengths. Errors: INVALID_ARGUMENT for no place at all,
     /// INVALID_STATE outside 1e-6 .. 1e15 M, UNSUPPORTED at or inside a spinning hole's horizon.
     pub fn local_frame(&self, position: DVec3) -> Result<LocalFrame> {
-        let chart = self.hole.scene_to_chart() * position / self.hole.mass;
-        let r = chart.length();
-        // NaN and r = 0 are refused by the frame itself.
-        if position.is_finite() && (r > MAX_RADIUS || (r > 0.0 && r < MIN_RADIUS)) {
-            return Err(Error::state(format!(
-                "position lies at r = {} M (mass is {}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
-                Number(r),
-                Number(self.hole.mass)
-            )));
-        }
+        let chart = self.chart_place(position)?;
         LocalFrame::new(self.hole.spin, chart).map_err(|why| match why {
             NoFrame::NotAPlace => Error::argument(format!(
                 "position ({}, {}, {}) is no place for an observer: it must be finite, and not the hole's centre",
@@ -36,12 +30,42 @@ impl Scene {
                 Number(position.z)
             )),
             NoFrame::InsideSpinningHorizon => Error::unsupported(format!(
-                "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; inside, only spin 0 is traced",
+                "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; there observers have places in the \
+                 chart BHR_CHART_RAIN only",
                 Number(chart.length()),
                 Number(horizon_outer(self.hole.spin)),
                 Number(self.hole.spin)
             )),
         })
+    }
+
+    /// A place in the chart, M. Errors: INVALID_STATE outside 1e-6 .. 1e15 M. A place that is none is left as it is.
+    fn chart_place(&self, position: DVec3) -> Result<DVec3> {
+        let chart = self.hole.scene_to_chart() * position / self.hole.mass;
+        let r = chart.length();
+        if position.is_finite() && (r > MAX_RADIUS || (r > 0.0 && r < MIN_RADIUS)) {
+            return Err(Error::state(format!(
+                "position lies at r = {} M (mass is {}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
+                Number(r),
+                Number(self.hole.mass)
+            )));
+        }
+        Ok(chart)
+    }
+
+    /// The rain observer's frame at a place of Doran's chart. Errors: as `local_frame`; UNSUPPORTED at or within
+    /// r- (1 + 1e-6).
+    fn rain_frame(&self, position: DVec3) -> Result<LocalFrame> {
+        LocalFrame::rain(self.hole.spin, self.chart_place(position)?)
+    }
+
+    /// The local frame at a place that a host's rays begin at, which are told in the chart of the camera. Errors: as
+    /// `local_frame` and `rain_frame`.
+    pub fn frame_of_rays(&self, position: DVec3) -> Result<LocalFrame> {
+        match self.camera.chart {
+            Chart::Static => self.local_frame(position),
+            Chart::Rain => self.rain_frame(position),
+        }
     }
 
     /// Takes chart directions to sky axes.
@@ -52,19 +76,66 @@ impl Scene {
 
     /// The camera's observer. Errors: as `local_frame`; INVALID_STATE where the camera's motion cannot be.
     pub fn observer(&self) -> Result<Observer> {
-        self.observer_of(&self.camera)
+        Ok(self.viewpoint_of(&self.camera)?.observer)
     }
 
-    pub(super) fn observer_of(&self, camera: &Camera) -> Result<Observer> {
-        let frame = self.local_frame(camera.position)?;
+    /// The viewpoint that tracers see a camera's scene from. Errors: as `observer`.
+    pub(super) fn viewpoint_of(&self, camera: &Camera) -> Result<Viewpoint> {
+        let observer = match camera.chart {
+            Chart::Static => self.observer_in_static_chart(camera, self.local_frame(camera.position)?)?,
+            Chart::Rain => return self.viewpoint_in_rain_chart(camera),
+        };
+        Ok(Viewpoint { observer, place: observer.frame, turn: DMat3::IDENTITY })
+    }
+
+    /// Where light that escapes may come from farther in, rays are traced in the chart of Boyer and Lindquist, which
+    /// has lens tables, and nearer in Doran's, of which nothing diverges at the horizon.
+    fn viewpoint_in_rain_chart(&self, camera: &Camera) -> Result<Viewpoint> {
+        let place = self.rain_frame(camera.position)?;
+        let beta = match camera.motion {
+            Motion::Velocity => place.components(self.hole.scene_to_chart() * camera.velocity),
+            Motion::FreeFall => DVec3::ZERO,
+            Motion::Static | Motion::Orbit => return self.resting_viewpoint(camera, place),
+        };
+        if place.a == 0.0 || place.r <= RAIN_CLOCK_RADIUS {
+            let observer = Observer::moving(place.with_offset_series(), beta);
+            return Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY });
+        }
+        Ok(restated(&Observer::moving(place, beta)))
+    }
+
+    /// The viewpoint of the camera for what knows the chart of Boyer and Lindquist only: with spin, outside the
+    /// horizon. Errors: as `observer`; UNSUPPORTED farther in, naming `what` is asked for.
+    pub(super) fn static_viewpoint(&self, what: &str) -> Result<Viewpoint> {
+        let viewpoint = self.viewpoint_of(&self.camera)?;
+        let frame = viewpoint.observer.frame;
+        if !frame.rain || frame.a == 0.0 {
+            return Ok(viewpoint);
+        }
+        if frame.r <= horizon_outer(frame.a) {
+            let (r, limit) = (Number(frame.r), Number(horizon_outer(frame.a)));
+            return Err(Error::unsupported(format!(
+                "camera at r = {r} M lies at or inside the horizon of a spinning hole, {limit} M: {what} is not \
+                 supported there"
+            )));
+        }
+        Ok(restated(&viewpoint.observer))
+    }
+
+    /// The viewpoint of a camera that keeps its radius, at the place of a rain frame.
+    fn resting_viewpoint(&self, camera: &Camera, place: LocalFrame) -> Result<Viewpoint> {
+        if place.r <= horizon_outer(place.a) {
+            return Err(no_motion(camera.motion, &place));
+        }
+        let observer = self.observer_in_static_chart(camera, place.to_static())?;
+        Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY })
+    }
+
+    /// The camera's observer at a place of the chart of Boyer and Lindquist.
+    fn observer_in_static_chart(&self, camera: &Camera, frame: LocalFrame) -> Result<Observer> {
         let spin = self.hole.spin;
         if frame.rain && camera.motion != Motion::FreeFall {
-            return Err(Error::state(format!(
-                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {}: there only FREE_FALL is \
-                 possible",
-                Number(frame.r),
-                camera.motion.name()
-            )));
+            return Err(no_motion(camera.motion, &frame));
         }
         match camera.motion {
             Motion::Static => Ok(Observer::at_rest(frame)),
@@ -93,16 +164,53 @@ impl Scene {
 
     /// The lens of the camera for the frame that `region` describes. Errors: as `observer` and `Mapping::new`.
     pub fn lens(&self, region: &Region) -> Result<Lens> {
-        let observer = self.observer()?;
+        self.lens_at(&self.viewpoint_of(&self.camera)?, region)
+    }
+
+    /// [`Self::lens`] at a viewpoint of the camera's.
+    pub(super) fn lens_at(&self, viewpoint: &Viewpoint, region: &Region) -> Result<Lens> {
+        let Viewpoint { observer, place, turn } = *viewpoint;
         let mapping = Mapping::new(&self.camera, region)?;
         let axes = self.hole.scene_to_chart() * self.camera.axes()?;
-        let frame = &observer.frame;
-        let [right, up, forward] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| frame.components(axis));
+        let [right, up, forward] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| turn * place.components(axis));
         // A picture about another centre costs nothing in the axis that every point of the image plane has once.
         let middle = forward + right * mapping.centre.x + up * mapping.centre.y;
         let axes = DMat3::from_cols(right * mapping.plane.x, up * mapping.plane.y, middle);
-        Ok(Lens { observer, axes, mapping })
+        let delay_offset = match (self.camera.chart, observer.frame.clock()) {
+            (Chart::Static, Clock::Rain) => f64::NAN,
+            (chart, _) => -clock_advance(&observer.frame, chart),
+        };
+        Ok(Lens { observer, axes, mapping, place, turn, delay_offset })
     }
+}
+
+/// INVALID_STATE for a motion that is none at or inside the horizon.
+fn no_motion(motion: Motion, place: &LocalFrame) -> Error {
+    Error::state(format!(
+        "camera at r = {} M, at or inside the horizon, {} M, cannot move as {}: nothing is at rest or in orbit there, \
+         and velocities are told in the chart BHR_CHART_RAIN only",
+        Number(place.r),
+        Number(horizon_outer(place.a)),
+        motion.name()
+    ))
+}
+
+/// The viewpoint of an observer of the rain frame, outside the horizon, in the chart of Boyer and Lindquist.
+fn restated(observer: &Observer) -> Viewpoint {
+    let place = observer.frame;
+    let (observer, turn) = observer.carried_by(&Observer::rain_against(place.to_static()));
+    Viewpoint { observer, place, turn }
+}
+
+/// An observer as tracers have it, and its place as the host tells it.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewpoint {
+    pub observer: Observer,
+    /// The frame of the camera's chart at its place.
+    pub place: LocalFrame,
+    /// Takes directions along the axes of the camera's own observer, who moves against `place`, to those along the axes
+    /// of `observer`.
+    pub turn: DMat3,
 }
 
 /// The lens before an observer.
@@ -113,6 +221,11 @@ pub struct Lens {
     /// observer's frame.
     pub axes: DMat3,
     pub mapping: Mapping,
+    /// As of `Viewpoint`.
+    pub place: LocalFrame,
+    pub turn: DMat3,
+    /// The delays of the camera's chart less those of records, M; NaN where the chart has none.
+    pub delay_offset: f64,
 }
 
 impl Lens {
@@ -126,6 +239,11 @@ impl Lens {
     /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look_direction`).
     pub fn look_direction(&self, x: f64, y: f64) -> DVec3 {
         (self.axes * self.mapping.point(x, y)).normalize()
+    }
+
+    /// A direction along the axes of `observer` as the host places it in the chart of the camera.
+    pub fn placed(&self, look: DVec3) -> DVec3 {
+        self.place.vector(self.turn.transpose() * look)
     }
 
     /// The distance, M, along the line of sight through (x, y), straight as on the chart, to its point nearest to the

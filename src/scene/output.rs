@@ -9,7 +9,6 @@ use super::{Scene, View, VolumeResolution};
 use crate::emit::{Needs, PlaneLight};
 use crate::error::Result;
 use crate::image::PixelFormat;
-use crate::physics::geodesic::Clock;
 use crate::physics::trace::Fate;
 use glam::{DMat3, DVec3};
 
@@ -190,10 +189,7 @@ impl<'a> RayValues<'a> {
             },
             RayOutputKind::Disk => match here.crossings.get(output.index as usize) {
                 Some(crossing) => {
-                    let delay = match self.lens.observer.frame.clock() {
-                        Clock::Coordinate => self.mass * crossing.place.delay,
-                        Clock::Rain => f64::NAN,
-                    };
+                    let delay = self.mass * (crossing.place.delay + self.lens.delay_offset);
                     [self.mass / crossing.u, crossing.place.azimuth, crossing.g, delay]
                 }
                 None => [f64::NAN; OUTPUT_WORDS],
@@ -203,7 +199,7 @@ impl<'a> RayValues<'a> {
                 single(first.map_or(without_crossing(here.fate), |crossing| f64::from(crossing.order)))
             }
             RayOutputKind::Deflection => {
-                let look = self.lens.observer.frame.vector(self.lens.look_direction(x, y));
+                let look = self.lens.placed(self.lens.look_direction(x, y));
                 single(sky(look.cross(here.direction).length().atan2(look.dot(here.direction))))
             }
         }
@@ -219,9 +215,9 @@ impl<'a> RayValues<'a> {
     /// and that of captured rays, passes the hole: the distance to the point of the line of sight that is nearest to
     /// it.
     fn depth(&self, here: &Record, x: f64, y: f64) -> f64 {
-        let frame = &self.lens.observer.frame;
+        let place = &self.lens.place;
         match here.crossings.first() {
-            Some(crossing) if crossing.order == 0 => self.mass * distance(crossing, frame.e_r * frame.r),
+            Some(crossing) if crossing.order == 0 => self.mass * distance(crossing, place.e_r * place.r),
             None if here.fate == Fate::Escaped => f64::INFINITY,
             _ => self.mass * self.lens.closest_approach(x, y),
         }

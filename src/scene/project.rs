@@ -2,13 +2,17 @@
 //! Where a point of the scene appears on the screen: the inverse of `query`'s camera rays. Knows no tracer: rays are
 //! found in f64, those of many points on several threads.
 
-use super::query::PixelRays;
+use super::chart::Chart;
+use super::content::clock_advance;
+use super::query::{PixelRays, image_region};
 use super::spread::Spread;
 use super::{Ray, Region, Scene};
 use crate::error::{Error, Number, Result};
+use crate::physics::geodesic::{rain_offset, turned};
 use crate::physics::images::{Image, NoImage, image};
 use crate::physics::observer::Observer;
 use crate::physics::orbit::horizon_outer;
+use crate::physics::rain::offsets;
 use glam::{DVec2, DVec3};
 
 pub use crate::physics::images::HIGHEST_ORDER;
@@ -65,7 +69,9 @@ impl Scene {
         if order > HIGHEST_ORDER {
             return Err(Error::argument(format!("order is {order}; the highest is {HIGHEST_ORDER}")));
         }
-        let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
+        let region = image_region(width, height, region)?;
+        let viewpoint = self.static_viewpoint("bhr_project_point")?;
+        let pixel_rays = self.pixel_rays_of(self.lens_at(&viewpoint, &region)?)?;
         Ok(Projector { scene: self, pixel_rays, region, size: DVec2::new(width.into(), height.into()), order })
     }
 }
@@ -79,11 +85,14 @@ impl Projector<'_> {
             return Err(Error::argument(format!("point is ({x}, {y}, {z}); it must be finite")));
         }
         let scene = self.scene;
-        let there = scene.hole.scene_to_chart() * point / scene.hole.mass;
-        if there.length() <= horizon_outer(scene.hole.spin) {
+        let (spin, mut there) = (scene.hole.spin, scene.hole.scene_to_chart() * point / scene.hole.mass);
+        if there.length() <= horizon_outer(spin) {
             return Ok(Projected::Nowhere);
         }
         scene.local_frame(point)?;
+        if scene.camera.chart == Chart::Rain && spin != 0.0 {
+            there = turned(there, -offsets(spin, 1.0 / there.length()).azimuth);
+        }
         Ok(match image(&self.pixel_rays.aberration.frame, there, self.order) {
             Ok(image) => Projected::At(self.seen(&image, point)),
             Err(NoImage::None) => Projected::Nowhere,
@@ -103,30 +112,39 @@ impl Projector<'_> {
         // Back from the local frame to the camera's own, whose axes are not turned by the boost.
         let (look, ratio) = Observer::moving(observer.frame, -observer.beta).aberrate(image.look);
         let frequency_ratio = 1.0 / ratio;
+        let ray = self.pixel_rays.stated(scene, image.look, frequency_ratio);
         let position = lens.position(look).map(|at| at - DVec2::new(begin_x, begin_y));
         let inside = |at: DVec2| at.min_element() >= 0.0 && at.x <= self.size.x && at.y <= self.size.y;
         let shown = |at: DVec2| lens.mapping.has_look_direction(at.x + begin_x, at.y + begin_y);
         let to_scene = scene.hole.scene_to_chart().transpose();
+        let retardation = image.constants.retardation(&image.start, &image.there);
+        let delay = match scene.camera.chart {
+            Chart::Static if observer.frame.rain => f64::NAN,
+            Chart::Static => retardation,
+            Chart::Rain => {
+                // Up to the clock of the observer's delays, from rain time at the point.
+                let advance = clock_advance(&observer.frame, Chart::Rain);
+                retardation - advance - time_offset(scene.hole.spin, image.there.u)
+            }
+        };
         let distance = point.distance(scene.camera.position);
         ProjectedPoint {
             position,
             on_screen: position.is_some_and(|at| inside(at) && shown(at)),
-            ray: Ray {
-                position: scene.camera.position,
-                direction: to_scene * observer.frame.vector(image.look),
-                frequency_ratio,
-            },
+            ray,
             // Aberration makes solid angles as much smaller as the square of frequencies larger.
             magnification: image.magnification / (frequency_ratio * frequency_ratio),
-            delay: match observer.frame.rain {
-                true => f64::NAN,
-                false => scene.hole.mass * image.constants.retardation(&image.start, &image.there),
-            },
+            delay: scene.hole.mass * delay,
             redshift: frequency_ratio * image.redshift,
             distance,
-            apparent: scene.camera.position + to_scene * observer.frame.vector(look) * distance,
+            apparent: scene.camera.position + to_scene * lens.placed(look) * distance,
         }
     }
+}
+
+/// Rain time less t at 1/r = `u`, outside the horizon.
+fn time_offset(spin: f64, u: f64) -> f64 {
+    if spin == 0.0 { rain_offset(u, 1.0 - 2.0 * u) } else { offsets(spin, u).time }
 }
 
 #[cfg(test)]

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Questions a host asks of a scene that need no tracer: numbers about the hole, camera rays, the camera's world line.
 
+use super::chart::Chart;
 use super::frame::Region;
 use super::observer::Lens;
-use super::{Camera, Motion, Ray, Scene};
+use super::{Camera, Motion, Ray, Scene, Transport};
 use crate::error::{Error, Number, Result};
-use crate::physics::geodesic::rain_offset;
+use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::metric::{Kerr, boyer_lindquist};
-use crate::physics::observer::Observer;
+use crate::physics::observer::{LocalFrame, Observer};
 use crate::physics::orbit::{circular_orbit, ergosphere, horizon_inner, horizon_outer, isco, photon_orbit};
 use crate::physics::shadow::{CRITICAL_IMPACT_PARAMETER, shadow};
+use crate::physics::world_line::{Body, End, Event, world_line};
 use glam::{DQuat, DVec3};
 
 /// Farthest pixel position that `camera_ray` takes.
@@ -19,6 +21,8 @@ const MAX_PIXEL: f64 = 1e9;
 #[derive(Clone, Copy, Debug)]
 pub struct HoleInfo {
     pub horizon_radius: f64,
+    /// 0 without spin.
+    pub inner_horizon_radius: f64,
     pub ergosphere_equatorial_radius: f64,
     pub photon_orbit_prograde: f64,
     pub photon_orbit_retrograde: f64,
@@ -30,7 +34,7 @@ pub struct HoleInfo {
     /// Angular radius of the shadow that the camera's observer sees, without spin.
     pub shadow_angular_radius: f64,
     pub camera_radius: f64,
-    /// d tau / d t of the camera's observer.
+    /// d tau / d t of the camera's observer, t being the time of the camera's chart.
     pub camera_time_rate: f64,
 }
 
@@ -42,6 +46,7 @@ impl Scene {
         let spinless = a == 0.0;
         Ok(HoleInfo {
             horizon_radius: m * horizon_outer(a),
+            inner_horizon_radius: m * horizon_inner(a),
             ergosphere_equatorial_radius: m * ergosphere(a, std::f64::consts::FRAC_PI_2),
             photon_orbit_prograde: m * photon_orbit(a),
             photon_orbit_retrograde: m * photon_orbit(-a),
@@ -50,8 +55,18 @@ impl Scene {
             critical_impact_parameter: if spinless { m * CRITICAL_IMPACT_PARAMETER } else { f64::NAN },
             shadow_angular_radius: observer.filter(|_| spinless).map_or(f64::NAN, |o| shadow(&o).radius),
             camera_radius: self.camera.position.x.hypot(self.camera.position.y).hypot(self.camera.position.z),
-            camera_time_rate: observer.map_or(f64::NAN, |o| o.time_rate()),
+            camera_time_rate: observer.map_or(f64::NAN, |o| self.time_rate(&o)),
         })
+    }
+
+    /// By rain time, clocks that rest in the rain frame run at 1; t and rain time run alike where r stays.
+    fn time_rate(&self, observer: &Observer) -> f64 {
+        let velocity = self.camera.velocity;
+        match (self.camera.chart, self.camera.motion) {
+            (Chart::Rain, Motion::FreeFall) => 1.0,
+            (Chart::Rain, Motion::Velocity) => (1.0 - velocity.length_squared()).max(0.0).sqrt(),
+            _ => observer.time_rate(),
+        }
     }
 
     /// (r / M, theta) of a place. Errors: INVALID_ARGUMENT not finite, at r = 0, on the horizon.
@@ -150,13 +165,20 @@ impl Scene {
     }
 
     pub(super) fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
-        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
-        if width == 0 || height == 0 {
-            return Err(Error::argument(format!("image is {width} x {height}; each side must be at least 1")));
-        }
-        region.check_image(width, height)?;
-        let lens = self.lens(&region)?;
+        let region = image_region(width, height, region)?;
+        Ok((self.pixel_rays_of(self.lens(&region)?)?, region))
+    }
+
+    /// Rays as hosts have them, through a lens of the camera's.
+    pub(super) fn pixel_rays_of(&self, lens: Lens) -> Result<PixelRays> {
         let frame = lens.observer.frame;
+        if self.camera.chart == Chart::Rain {
+            let restated = (!frame.rain).then(|| {
+                let rain = Observer::rain_against(frame);
+                Observer { beta: -rain.beta, ..rain }
+            });
+            return Ok(PixelRays { lens, aberration: lens.observer, restated });
+        }
         // Outside the horizon a ray is stated in the static frame, whatever frame the tracers prefer.
         let aberration = if frame.rain && frame.r > horizon_outer(self.hole.spin) {
             let static_frame = self.local_frame(self.camera.position)?;
@@ -164,47 +186,108 @@ impl Scene {
         } else {
             lens.observer
         };
-        Ok((PixelRays { lens, aberration }, region))
+        Ok(PixelRays { lens, aberration, restated: None })
     }
 
     /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that
-    /// went by: by the clock of the end (`Scene::time`) less that of the begin. For a fall inside the horizon that is
-    /// proper time.
+    /// went by: by the clock of the end (`Scene::time`) less that of the begin. In the chart STATIC that is proper time
+    /// for a fall inside the horizon of a hole without spin.
     ///
     /// ORBIT follows the geodesic: at spin 0 and off the plane the great circle along +ph, position and axes turned
-    /// together. Errors: UNSUPPORTED for VELOCITY; as `observer` for where the camera is; INVALID_STATE when a fall
-    /// ends in the singularity or, with spin, at the horizon; INVALID_ARGUMENT for a `proper_time` not finite.
+    /// together. VELOCITY is a body in free fall. Errors: as `observer` for where the camera is; INVALID_STATE when the
+    /// world line ends before (in the singularity, above the inner horizon or, in the chart STATIC, at the horizon);
+    /// INVALID_ARGUMENT for a `proper_time` not finite; UNSUPPORTED for a STATIC camera with PARALLEL axes, and as
+    /// `world_line`.
     pub fn advance_camera(&self, camera: &Camera, proper_time: f64) -> Result<(Camera, f64)> {
         if !proper_time.is_finite() {
             return Err(Error::argument(format!("proper_time is {}; it must be finite", Number(proper_time))));
         }
         camera.check()?;
-        let observer = self.observer_of(camera)?;
-        let tau = proper_time / self.hole.mass;
+        let viewpoint = self.viewpoint_of(camera)?;
+        let (observer, place) = (viewpoint.observer, viewpoint.place);
+        let (tau, spin) = (proper_time / self.hole.mass, self.hole.spin);
+        let parallel = camera.transport == Transport::Parallel;
         match camera.motion {
-            Motion::Velocity => Err(Error::unsupported(
-                "camera motion VELOCITY has no world line of its own; move its position yourself",
+            Motion::Static if parallel => Err(Error::unsupported(
+                "camera transport PARALLEL needs a world line in free fall; a STATIC camera's is none",
             )),
+            _ if proper_time == 0.0 => Ok((*camera, 0.0)),
             Motion::Static => Ok((*camera, proper_time / observer.time_rate())),
             Motion::Orbit => {
-                let (a, r) = (self.hole.spin, observer.frame.r);
-                let orbit =
-                    circular_orbit(a, r).ok_or_else(|| Error::internal("an orbiting observer without orbit"))?;
-                let axis = observer.frame.e_r.cross(observer.frame.e_phi);
+                let orbit = circular_orbit(spin, observer.frame.r)
+                    .ok_or_else(|| Error::internal("an orbiting observer without orbit"))?;
+                let axis = place.e_r.cross(place.e_phi);
                 let angle = orbit.angular_velocity * orbit.ut * tau;
-                Ok((self.turned(camera, axis, angle), proper_time * orbit.ut))
+                let mut carried = *camera;
+                if parallel {
+                    // How axes turn against the triad does not depend on the azimuth, nor without spin on the latitude.
+                    let position = DVec3::new(place.r, 0.0, 0.0);
+                    let body = Body { clock: Clock::Coordinate, position, velocity: observer.beta, time: 0.0 };
+                    let event = self.fall(&body, self.axes_at(camera, &place), tau)?;
+                    [carried.forward, carried.up] = self.axes_of(&place, &event.axes);
+                }
+                Ok((self.turned(&carried, axis, angle), proper_time * orbit.ut))
             }
-            Motion::FreeFall => {
-                let fall = if self.hole.spin == 0.0 {
-                    fall_schwarzschild(observer.frame.r, tau)
-                } else {
-                    fall_kerr(self.hole.spin, observer.frame.r, observer.frame.cos, tau)
-                }?;
-                let mut moved = self.turned(camera, DVec3::Z, fall.azimuth);
-                moved.position *= fall.radius / observer.frame.r;
-                Ok((moved, fall.time * self.hole.mass))
+            Motion::FreeFall if spin == 0.0 => {
+                let fall = fall_schwarzschild(place.r, tau)?;
+                let time = if camera.chart == Chart::Rain { tau } else { fall.time };
+                let position = camera.position * (fall.radius / place.r);
+                Ok((Camera { position, ..*camera }, time * self.hole.mass))
+            }
+            Motion::FreeFall | Motion::Velocity => {
+                let velocity = match (camera.motion, camera.chart) {
+                    (Motion::FreeFall, Chart::Rain) => DVec3::ZERO,
+                    (_, Chart::Rain) => place.components(self.hole.scene_to_chart() * camera.velocity),
+                    (_, Chart::Static) => observer.beta,
+                };
+                let (clock, position) = (camera.chart.clock(), place.e_r * place.r);
+                let axes = self.axes_at(camera, &place);
+                let event = self.fall(&Body { clock, position, velocity, time: 0.0 }, axes, tau)?;
+                let there = match camera.chart {
+                    Chart::Rain => LocalFrame::rain(spin, event.body.position)?,
+                    Chart::Static => LocalFrame::new(spin, event.body.position)
+                        .map_err(|why| Error::internal(format!("a body outside the horizon has no frame: {why:?}")))?,
+                };
+                let [forward, up] = self.axes_of(&there, if parallel { &event.axes } else { &axes });
+                let to_scene = self.hole.scene_to_chart().transpose();
+                let velocity = match camera.motion {
+                    Motion::Velocity => to_scene * there.vector(event.body.velocity),
+                    _ => camera.velocity,
+                };
+                let position = to_scene * event.body.position * self.hole.mass;
+                Ok((Camera { position, forward, up, velocity, ..*camera }, event.body.time * self.hole.mass))
             }
         }
+    }
+
+    /// A camera's forward and up, and no third axis, along the triad of `place`.
+    fn axes_at(&self, camera: &Camera, place: &LocalFrame) -> [DVec3; 3] {
+        let along = |axis| place.components(self.hole.scene_to_chart() * axis);
+        [along(camera.forward), along(camera.up), DVec3::ZERO]
+    }
+
+    /// The forward and up of which these are the components along the triad of `place`.
+    fn axes_of(&self, place: &LocalFrame, axes: &[DVec3; 3]) -> [DVec3; 2] {
+        [axes[0], axes[1]].map(|axis| self.hole.scene_to_chart().transpose() * place.vector(axis))
+    }
+
+    /// A body in free fall, and axes that it carries along, after the proper time `tau`, M. Errors: as `advance_camera`.
+    fn fall(&self, body: &Body, axes: [DVec3; 3], tau: f64) -> Result<Event> {
+        let a = self.hole.spin;
+        let events = world_line(a, body, &axes, &[tau])?;
+        let event = *events.first().ok_or_else(|| Error::internal("a world line without its event"))?;
+        if let Some(end) = event.end {
+            let (tau, reached, r) = (Number(tau), Number(event.proper_time), Number(event.body.position.length()));
+            let why = match end {
+                End::Horizon => "the horizon, beyond which the chart BHR_CHART_STATIC does not reach",
+                End::InnerHorizon if a == 0.0 => "the singularity",
+                End::InnerHorizon => "the inner horizon",
+            };
+            return Err(Error::state(format!(
+                "the camera comes to {why}, at r = {r} M, after proper time {reached} M; {tau} M were asked for"
+            )));
+        }
+        Ok(event)
     }
 
     /// `camera` with position and axes turned about a chart axis through the hole.
@@ -231,24 +314,42 @@ fn angles(indices: &[usize]) -> i32 {
     indices.iter().filter(|&&i| i >= 2).count() as i32
 }
 
-/// The camera's lens and the boost into the frame in which its rays are stated.
+/// The region that a `width` x `height` image is, of itself without one. Errors: INVALID_ARGUMENT for a side of 0, and as
+/// `Region::check_image`.
+pub(super) fn image_region(width: u32, height: u32, region: Option<Region>) -> Result<Region> {
+    let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
+    if width == 0 || height == 0 {
+        return Err(Error::argument(format!("image is {width} x {height}; each side must be at least 1")));
+    }
+    region.check_image(width, height)?;
+    Ok(region)
+}
+
+/// The camera's lens and the boosts into the frame in which its rays are stated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelRays {
     pub(super) lens: Lens,
     pub(super) aberration: Observer,
+    /// From there into the rain frame, where rays are stated in it and tracers do not.
+    pub(super) restated: Option<Observer>,
 }
 
 impl PixelRays {
     fn ray(&self, scene: &Scene, x: f64, y: f64) -> Ray {
-        let (n, frequency_ratio) = match self.lens.mapping.has_look_direction(x, y) {
-            true => self.aberration.aberrate(self.lens.look_direction(x, y)),
-            false => (DVec3::ZERO, 1.0),
-        };
-        let chart = self.aberration.frame.vector(n);
+        if !self.lens.mapping.has_look_direction(x, y) {
+            return Ray { position: scene.camera.position, direction: DVec3::ZERO, frequency_ratio: 1.0 };
+        }
+        let (n, ratio) = self.aberration.aberrate(self.lens.look_direction(x, y));
+        self.stated(scene, n, ratio)
+    }
+
+    /// The ray in the direction `n` of `aberration`'s frame, as a host has it; `ratio`: nu(camera) / nu(that frame).
+    pub(super) fn stated(&self, scene: &Scene, n: DVec3, ratio: f64) -> Ray {
+        let (n, more) = self.restated.map_or((n, 1.0), |to_rain| to_rain.aberrate(n));
         Ray {
             position: scene.camera.position,
-            direction: scene.hole.scene_to_chart().transpose() * chart,
-            frequency_ratio,
+            direction: scene.hole.scene_to_chart().transpose() * self.lens.place.vector(n),
+            frequency_ratio: ratio * more,
         }
     }
 }
@@ -256,7 +357,6 @@ impl PixelRays {
 /// The place that a fall from rest at infinity has come to, M = 1.
 struct Fall {
     radius: f64,
-    azimuth: f64,
     time: f64,
 }
 
@@ -272,42 +372,5 @@ fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
     }
     let radius = left.powf(2.0 / 3.0);
     let offset = |r: f64| if r > 2.0 { rain_offset(1.0 / r, (r - 2.0) / r) } else { 0.0 };
-    Ok(Fall { radius, azimuth: 0.0, time: tau - (offset(radius) - offset(r0)) })
-}
-
-/// E = 1, L = Q = 0 (Carter 1968): dr/dtau = -sqrt(2 r (r^2 + a^2)) / Sigma, dph/dtau = 2 a r / (Sigma Delta),
-/// dt/dtau = A / (Sigma Delta), theta constant. RK4 with steps in proportion to the distance to the horizon.
-fn fall_kerr(a: f64, r0: f64, cos: f64, tau: f64) -> Result<Fall> {
-    let r_plus = horizon_outer(a);
-    let rates = |r: f64| {
-        let sum = r * r + a * a;
-        let sigma = r * r + (a * cos).powi(2);
-        let delta = (r - r_plus) * (r - horizon_inner(a));
-        let big_a = sum * sum - delta * a * a * (1.0 - cos * cos);
-        [-(2.0 * r * sum).sqrt() / sigma, 2.0 * a * r / (sigma * delta), big_a / (sigma * delta)]
-    };
-    let (mut r, mut azimuth, mut time, mut left) = (r0, 0.0, 0.0, tau);
-    while left != 0.0 {
-        if !r.is_finite() {
-            return Err(Error::argument(format!("proper_time of {tau} M leads beyond all finite radii")));
-        }
-        if tau > 0.0 && r - r_plus < 1e-6 {
-            return Err(Error::state(format!(
-                "the fall from r = {r0} M reaches the horizon, {r_plus} M, within the proper time {tau} M asked for; \
-                 inside a spinning hole no camera is possible"
-            )));
-        }
-        let k1 = rates(r);
-        let most = 0.02 * (r - r_plus) / -k1[0];
-        let h = left.clamp(-most, most);
-        let k2 = rates(r + 0.5 * h * k1[0]);
-        let k3 = rates(r + 0.5 * h * k2[0]);
-        let k4 = rates(r + h * k3[0]);
-        let mean = |i: usize| h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-        r += mean(0);
-        azimuth += mean(1);
-        time += mean(2);
-        left -= h;
-    }
-    Ok(Fall { radius: r, azimuth, time })
+    Ok(Fall { radius, time: tau - (offset(radius) - offset(r0)) })
 }

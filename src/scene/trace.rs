@@ -4,10 +4,10 @@
 
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
-use super::{Method, Quality, Scene, VolumeResolution};
+use super::{Chart, Method, Quality, Scene, VolumeResolution};
 use crate::emit::Emitters;
 use crate::emit::half::{Evenness, LEAST_LIGHT, STRUCTURE_TOLERANCE, TOLERANCE};
-use crate::physics::geodesic::{Constants, State};
+use crate::physics::geodesic::{Clock, Constants, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
@@ -159,9 +159,13 @@ impl Scene {
         if !(ray.frequency_ratio > 0.0 && ray.frequency_ratio.is_finite() && ray.position.is_finite()) {
             return None;
         }
-        let frame = self.local_frame(ray.position).ok()?;
+        let frame = self.frame_of_rays(ray.position).ok()?;
         let n = look_components(self, &frame, ray.direction)?;
-        Some((frame, frame.start(n)))
+        let mut start = frame.start(n);
+        if let (Chart::Rain, Some((constants, _))) = (self.camera.chart, &mut start) {
+            constants.clock = Clock::Rain;
+        }
+        Some((frame, start))
     }
 
     /// Whether the disk's matter, or without a disk any matter a redshift is asked for, orbits towards -ph.
@@ -209,7 +213,7 @@ impl Scene {
                 radius: mass / crossing.u,
                 azimuth: crossing.azimuth,
                 redshift: ray.frequency_ratio * crossing.redshift(c, &matter),
-                delay: if frame.rain { f64::NAN } else { mass * crossing.delay },
+                delay: if frame.rain && self.camera.chart == Chart::Static { f64::NAN } else { mass * crossing.delay },
             };
         }
         hit.crossing_count = traced.crossings.len().min(MAX_CROSSINGS) as u32;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
-//! in f32. Two kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell them
-//! from it, and those that wind about the hole, along which the rounding of f32 grows too large.
+//! in f32. Three kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell them
+//! from it, those that wind about the hole, along which the rounding of f32 grows too large, and those in the chart RAIN,
+//! whose integrals f32 would have to take from the dense output.
 
 use super::tracer::GpuTracer;
 use crate::allocate::{collected, with_room};
@@ -14,7 +15,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer};
 use crate::physics::trace::{self, PlaneCrossing, RayTrace};
 use crate::scene::host_rays::trace_some;
-use crate::scene::{Fate, Hit, MAX_CROSSINGS, Ray, Scene};
+use crate::scene::{Chart, Fate, Hit, MAX_CROSSINGS, Ray, Scene};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use wgpu::BufferUsages as Usage;
@@ -49,6 +50,7 @@ impl GpuTracer {
 
     fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         let horizon = horizon_outer(scene.hole.spin);
+        let is_rain = scene.camera.chart == Chart::Rain;
         let mut exact = with_room(rays.len(), "rays to trace")?;
         let mut started = with_room(rays.len(), "rays to trace")?;
         let mut starts = with_room(rays.len(), "rays to trace")?;
@@ -61,7 +63,9 @@ impl GpuTracer {
                     *hit = scene.hit(ray, &frame, None, &nothing);
                 }
                 Some((frame, Some((constants, state))))
-                    if (frame.r / horizon - 1.0).abs() < TOO_NEAR || constants.critical_margin(&state) < WINDS =>
+                    if is_rain
+                        || (frame.r / horizon - 1.0).abs() < TOO_NEAR
+                        || constants.critical_margin(&state) < WINDS =>
                 {
                     exact.push(index);
                 }

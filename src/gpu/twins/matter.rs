@@ -510,7 +510,7 @@ pub fn group() -> Group {
             |i, o| {
                 let (c, observer) = (constants(i), state(i, STATE));
                 let seen =
-                    Seen { frequency_ratio: 1.0, static_lapse: None, pixel_angle: i.x(29), swept: i.x(28), rays: 1 };
+                    Seen { frequency_ratio: 1.0, static_observer: None, pixel_angle: i.x(29), swept: i.x(28), rays: 1 };
                 let there = State { u: i.x(23), du: i.x(24), n: i.v3(25), ..observer };
                 let width = seen.footprint(&c, &observer, &there);
                 // Rays that come straight from where they are bend by the difference of two angles.

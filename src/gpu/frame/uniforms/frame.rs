@@ -188,6 +188,9 @@ impl FrameUniform {
     pub fn new(scene: &Scene, emitters: &Emitters, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
+        if frame.rain && a != 0.0 {
+            return Err(crate::error::Error::unsupported("the GPU tracer does not know the chart RAIN yet"));
+        }
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
