@@ -12,7 +12,7 @@ struct RayBegin {
     state: State,
     // nu(camera) / nu(observer of the local frame).
     frequency_ratio: f32,
-    // False: no light can come from there (rain frame, E <= 0).
+    // False: no light can come from there (rain frame, Observer::start_rain of observer.rs).
     has_light: bool,
     // Q.
     carter: f32,
@@ -85,6 +85,9 @@ fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     return turned;
 }
 
+// Below this E, rays of the rain frame of a spinning hole keep nu_local = 1: f32 would not hold their constants.
+const SMALLEST_RAIN_ENERGY: f32 = 0.02;
+
 fn begin_ray(look: vec3<f32>) -> RayBegin {
     let seen = aberrate(look);
     var begin = begin_local(seen.n);
@@ -96,8 +99,9 @@ fn begin_ray(look: vec3<f32>) -> RayBegin {
 fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
-    // Rain frames are for spin 0.
-    if !SPINNING && not_inlined(frame.rain) != 0u {
+    if RAIN {
+        begin_spinning_rain(&begin, n);
+    } else if !SPINNING && not_inlined(frame.rain) != 0u {
         begin_rain(&begin, n);
     } else {
         begin_zamo(&begin, n);
@@ -156,6 +160,40 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = energy > 0.0;
+}
+
+// With spin: start_rain, rain_triad and doran_momentum of observer.rs.
+fn begin_spinning_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
+    let u = frame.observer_u;
+    let s = frame.observer_sine;
+    let c = frame.observer_cosine;
+    let a = frame.spin;
+    let w = frame.lapse;
+    let sin_turn = frame.rain_triad.x;
+    let cos_turn = frame.rain_triad.y;
+    let rho = frame.rain_triad.z;
+    let circumference = frame.rain_triad.w;
+    let q = sqrt(1.0 + a * a * u * u);
+    let p = -n;
+    let radial = cos_turn * p.x + sin_turn * p.z;
+    let across = cos_turn * p.z - sin_turn * p.x;
+    let seen = 1.0 - w / rho * radial;
+    // E = 1 where that scales nothing beyond use.
+    let is_unit = seen > SMALLEST_RAIN_ENERGY;
+    let e = select(1.0, 1.0 / seen, is_unit);
+    let energy = select(seen, 1.0, is_unit);
+    let polar = e * rho * p.y / u;
+    let around = e * circumference * p.z / u;
+    let du = e * (q * (rho * radial - w) + a * u * s * w * across);
+    let k = polar * polar + around * around - c * c * a * a * energy * energy;
+    let carter = polar * polar + c * c * (around * around - a * a * energy * energy);
+    (*begin).c = constants(energy, s * around, carter, k, e);
+    (*begin).carter = carter;
+    (*begin).state =
+        State(u, du, frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * around), 0.0, 0.0);
+    // Inside the horizon, P > 0 at r+.
+    let from_outside = energy * (frame.r_plus * frame.r_plus + a * a) > a * s * around;
+    (*begin).has_light = from_outside || u * frame.r_plus < 1.0;
 }
 
 // g of the disk's matter for the local frame's observer, of light that crosses the plane at 1/r = u with u' = du

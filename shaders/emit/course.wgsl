@@ -18,22 +18,30 @@ fn step_course(c: Constants, a: State, b: State, h: f32) -> StepCourse {
     let hh = h * h;
     let f = n_acceleration(c, a.n) * hh;
     let g = n_acceleration(c, b.n) * hh;
+    // Slopes of drag and delay at both ends.
+    let slopes = vec4<f32>(drag_slope(c, a), drag_slope(c, b), delay_slope(c, a), delay_slope(c, b)) * h;
     return StepCourse(
         quintic_of_u(c, a, b, h),
         quintic(a.n.x, a.dn.x * h, f.x, b.n.x, b.dn.x * h, g.x),
         quintic(a.n.y, a.dn.y * h, f.y, b.n.y, b.dn.y * h, g.y),
         quintic(a.n.z, a.dn.z * h, f.z, b.n.z, b.dn.z * h, g.z),
-        vec4<f32>(a.drag, drag_rate(c, a.u) * h, b.drag, drag_rate(c, b.u) * h),
-        vec4<f32>(a.delay, delay_rate(c, a.u, a.n.z) * h, b.delay, delay_rate(c, b.u, b.n.z) * h),
+        vec4<f32>(a.drag, slopes.x, b.drag, slopes.y),
+        vec4<f32>(a.delay, slopes.z, b.delay, slopes.w),
     );
 }
 
-fn quintic_at(q: Quintic, x: f32) -> f32 {
-    return q.low.x + x * (q.low.y + x * (q.low.z + x * (q.high.x + x * (q.high.y + x * q.high.z))));
+fn drag_slope(c: Constants, s: State) -> f32 {
+    if RAIN {
+        return rain_drag_rate(c, s.u, s.du) + c.a * s.du / (1.0 + sqrt(2.0 * max(s.u, 0.0)));
+    }
+    return drag_rate(c, s.u);
 }
 
-fn quintic_slope(q: Quintic, x: f32) -> f32 {
-    return q.low.y + x * (2.0 * q.low.z + x * (3.0 * q.high.x + x * (4.0 * q.high.y + x * 5.0 * q.high.z)));
+fn delay_slope(c: Constants, s: State) -> f32 {
+    if RAIN {
+        return rain_delay_rate(c, s.u, s.du, s.n.z);
+    }
+    return delay_rate(c, s.u, s.n.z);
 }
 
 // Cubic Hermite interpolation: value and slope at 0, value and slope at 1. It keeps slopes even from step to step,

@@ -5,6 +5,7 @@
 // and each block of places its colour.
 
 #import constants
+#import camera/chart
 #import emit/clouds
 #import emit/course
 #import emit/flow
@@ -80,11 +81,14 @@ fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow
     var row = 0.0;
     var turns = 0.0;
     if STRUCTURE {
-        let azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
+        let offsets = chart_offsets(c, u);
+        let azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x)
+            - offsets.x;
         var later = 0.0;
         if DELAY {
             // The retardation, whose part at the observer is that of all places.
-            later = seen_later - delay_boundary(c, u, du) - cubic_at(course.delay, x) - clock_offset(c, u);
+            later = seen_later - delay_boundary(c, u, du) - cubic_at(course.delay, x) - clock_offset(c, u)
+                - offsets.y;
         }
         let carried = vec2<f32>(angular_velocity(c.a, at, velocity), drift_rate(at, velocity));
         let there = cloud_place(0u, CloudPlace(r, cosine, azimuth, later), carried);

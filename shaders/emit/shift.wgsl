@@ -29,12 +29,9 @@ fn visible_shift(g: f32, gravity: f32) -> Shift {
 
 // nu(static observer or ZAMO where the camera is), for E and L scaled to nu_local = 1; in the rain frame inside the
 // horizon, its own.
-fn nu_static_observer(energy: f32) -> f32 {
-    let static_lapse = 1.0 - 2.0 * frame.observer_u;
-    if frame.rain == 0u || static_lapse <= 0.0 {
-        return 1.0;
-    }
-    return energy / sqrt(static_lapse);
+fn nu_static_observer(energy: f32, angular_momentum: f32) -> f32 {
+    let frequency = (energy - frame.static_angular_velocity * angular_momentum) / frame.static_lapse;
+    return select(1.0, frequency, frame.static_lapse > 0.0);
 }
 
 // The frequency that the ZAMO at 1/r = u and cos theta = `cosine` measures (src/physics/orbit.rs). d = Delta / r^2;

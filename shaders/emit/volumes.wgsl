@@ -4,6 +4,7 @@
 // bends, but cells are finer; and the last stretch before the horizon, a millionth of its radius, is left out.
 
 #import constants
+#import camera/chart
 #import emit/clouds
 #import emit/course
 #import emit/flow
@@ -324,9 +325,11 @@ fn coefficients_at(
         var azimuth = 0.0;
         var later = 0.0;
         if STRUCTURE || (SHAPES & (1u << SHAPE_SPOT)) != 0u {
-            azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
+            let offsets = chart_offsets(c, u);
+            let n = vec2<f32>(quintic_at(course.n_x, x), quintic_at(course.n_y, x));
+            azimuth = arctan2(n.y, n.x) + cubic_at(course.drag, x) - offsets.x;
             if DELAY {
-                let integral = cubic_at(course.delay, x) - observer.delay;
+                let integral = cubic_at(course.delay, x) - observer.delay + offsets.y;
                 later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
             }
         }
@@ -351,7 +354,8 @@ fn coefficients_at(
                 let g = ratio / nu;
                 var shift = Shift(g, g);
                 if !ALL_EFFECTS {
-                    shift = visible_shift(g, nu_static_observer(c.energy / c.nu_local) * c.nu_local / light.frequency);
+                    let seen = nu_static_observer(c.energy / c.nu_local, c.angular_momentum / c.nu_local);
+                    shift = visible_shift(g, seen * c.nu_local / light.frequency);
                 }
                 let found = glow_coefficients(matter, even * structure.x, structure.y, r, nu, g, shift);
                 if SHOWS_DEPTH {

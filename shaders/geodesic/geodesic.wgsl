@@ -8,6 +8,8 @@
 // Choices that a pipeline is made for; the host compiles one for each combination that it needs.
 override SPINNING: bool = true;
 override DELAY: bool = true;
+// With SPINNING: rays are traced in Doran's chart, in which observers in the rain frame of a spinning hole see.
+override RAIN: bool = false;
 
 struct Constants {
     a: f32,
@@ -57,6 +59,44 @@ fn horizon_function(c: Constants, u: f32) -> f32 {
     return max(1.0 - c.r_plus * u, HORIZON_ROOM) * (1.0 - c.r_minus * u);
 }
 
+// D of both signs, and never 0.
+fn signed_horizon_function(c: Constants, u: f32) -> f32 {
+    let room = 1.0 - c.r_plus * u;
+    let kept = select(max(room, HORIZON_ROOM), min(room, -HORIZON_ROOM), room < 0.0);
+    return kept * max(1.0 - c.r_minus * u, HORIZON_ROOM);
+}
+
+// W.
+fn radial_energy(c: Constants, u: f32) -> f32 {
+    return c.energy + c.a * (c.a * c.energy - c.angular_momentum) * (u * u);
+}
+
+// x.
+fn advanced_rate(c: Constants, u: f32, du: f32) -> f32 {
+    let w = radial_energy(c, u);
+    let falling = c.b * u * u / (w - du);
+    return select((w + du) / signed_horizon_function(c, u), falling, w >= 0.0 && du <= 0.0);
+}
+
+// How fast N turns, at most.
+fn turn_rate(c: Constants) -> f32 {
+    return sqrt(abs(c.k) + 2.0 * abs(c.a2e2));
+}
+
+// drag' in Doran's chart without what rain_drag_boundary holds.
+fn rain_drag_rate(c: Constants, u: f32, du: f32) -> f32 {
+    let w = sqrt(2.0 * max(u, 0.0));
+    let au2 = c.a * c.a * u * u;
+    let q = sqrt(1.0 + au2);
+    let rest = au2 * (1.0 + w / (1.0 + q)) / (q * (q + w) * (1.0 + w));
+    return -c.a * (advanced_rate(c, u, du) - c.energy + du * rest);
+}
+
+fn rain_drag_boundary(c: Constants, u: f32) -> f32 {
+    let w = sqrt(2.0 * max(u, 0.0));
+    return c.a * (w - log(1.0 + w));
+}
+
 fn drag_rate(c: Constants, u: f32) -> f32 {
     if !SPINNING {
         return 0.0;
@@ -69,7 +109,7 @@ fn delay_by_parts(c: Constants) -> bool {
     return c.energy > 0.05;
 }
 
-// d/dtau of State.delay.
+// d/dtau of State.delay. With RAIN, rain_delay_rate is instead.
 fn delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     if !DELAY {
         return 0.0;
@@ -77,7 +117,7 @@ fn delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     if SPINNING {
         return coordinate_delay_rate(c, u, n_z);
     }
-    return select(coordinate_delay_rate(c, u, n_z), rain_delay_rate(c, u), c.clock == CLOCK_RAIN);
+    return select(coordinate_delay_rate(c, u, n_z), plain_rain_delay_rate(c, u), c.clock == CLOCK_RAIN);
 }
 
 // With E > 0 the parts of E^2/u^2 and E^2/u are as for E = 1, over E.
@@ -95,18 +135,41 @@ fn coordinate_delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
 
 // E = 1. The nodes of a step have no u'; but rays that escape from the photon sphere or deeper, the only ones asked
 // for, all move outwards: u' = -sqrt(1 - K u^2 D).
-fn rain_delay_rate(c: Constants, u: f32) -> f32 {
+fn plain_rain_delay_rate(c: Constants, u: f32) -> f32 {
     let l = log(max(u, 1e-30));
     let du = -sqrt(max(1.0 - c.k * u * u * (1.0 - 2.0 * u), 0.0));
     return c.k * u * (3.0 + 2.0 * l - 2.0 * u * (2.0 + 3.0 * l) + 4.0 * u / (1.0 - du));
 }
 
+// d/dtau of rain time about a spinning hole: Constants::rain_delay_rate of geodesic.rs.
+fn rain_delay_rate(c: Constants, u: f32, du: f32, n_z: f32) -> f32 {
+    let a2 = c.a * c.a;
+    let w = sqrt(2.0 * max(u, 0.0));
+    let q = sqrt(1.0 + a2 * u * u);
+    let total = radial_energy(c, u);
+    if c.energy != 1.0 {
+        let around = c.a * (c.angular_momentum - c.a * c.energy * (1.0 - n_z) * (1.0 + n_z));
+        return (total + 2.0 * u * advanced_rate(c, u, du) + w / (q + w) * du) / (u * u) + around;
+    }
+    let l = log(max(abs(u), 1e-30));
+    let k = c.k - a2;
+    let by_parts = k * u * (1.0 + l) - c.b * u * u * (2.0 + 3.0 * l) + c.a2q * u * u * u * (1.0 + 2.0 * l);
+    let falling = c.b * u / (total - du) - u * (k - 2.0 * c.b * u + c.a2q * u * u) / (1.0 - du);
+    let other = (2.0 - c.a * c.angular_momentum * u + du * (2.0 - a2 * u)) / signed_horizon_function(c, u);
+    let y = select(other, falling, total >= 0.0 && du <= 0.0);
+    let beside = -w * a2 * du / ((1.0 + q) * (q + w) * (1.0 + w));
+    return c.b * u - c.a2q * u * u + 2.0 * by_parts + a2 * n_z * n_z + 2.0 * y + beside;
+}
+
 fn delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
-    if SPINNING {
+    if SPINNING && !RAIN {
         return coordinate_delay_boundary(c, u, du);
     }
+    if RAIN && c.energy != 1.0 {
+        return 0.0;
+    }
     let rain = 2.0 * du * log(u) - du / u - 2.0 * sqrt(2.0 / u) + 4.0 * log(1.0 + sqrt(2.0 * u));
-    return select(coordinate_delay_boundary(c, u, du), rain, c.clock == CLOCK_RAIN);
+    return select(coordinate_delay_boundary(c, u, du), rain, RAIN || c.clock == CLOCK_RAIN);
 }
 
 fn coordinate_delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
@@ -116,7 +179,7 @@ fn coordinate_delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
     return (2.0 * du * log(u / c.u_observer) - du / u) / c.energy;
 }
 
-// The clock's time less t at u, outside the horizon: H of rain_offset.
+// The clock's time less t at u, outside the horizon: H of rain_offset. With RAIN camera/chart.wgsl has it.
 fn clock_offset(c: Constants, u: f32) -> f32 {
     if SPINNING {
         return 0.0;

@@ -39,7 +39,10 @@ fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     var end = s;
     end.u = s.u + (h * s.du + h2 * (B1 * f1 + B2 * f2 + B3 * f3));
     end.du = s.du + h * (D1 * f1 + D2 * f2 + D3 * f3 + D4 * f4);
-    if SPINNING {
+    if SPINNING && RAIN {
+        nystrom_step_of_n(c, s, h, &end);
+        rain_step(c, s, h, &end);
+    } else if SPINNING {
         end.drag += h * (D1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2)
             + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
         let n_z = nystrom_step_of_n(c, s, h, &end);
@@ -80,9 +83,49 @@ fn turn_n(c: Constants, s: State, h: f32, end: ptr<function, State>) {
     (*end).dn = s.dn * turn.y - s.n * (turn.x * kappa);
 }
 
+// Drag and delay in Doran's chart over one step, by Gauss-Legendre on the dense output: their rates need u'.
+fn rain_step(c: Constants, s: State, h: f32, end: ptr<function, State>) {
+    let u = quintic_of_u(c, s, *end, h);
+    let n_z = quintic_of_n_z(c, s, *end, h);
+    // Slopes are by the step.
+    let by_tau = select(1.0 / h, 0.0, h == 0.0);
+    var drag = 0.0;
+    var delay = 0.0;
+    for (var i = 0; i < 3; i++) {
+        let x = GAUSS_NODES[i];
+        let there = quintic_at(u, x);
+        let slope = quintic_slope(u, x) * by_tau;
+        drag += GAUSS_WEIGHTS[i] * rain_drag_rate(c, there, slope);
+        if DELAY {
+            delay += GAUSS_WEIGHTS[i] * rain_delay_rate(c, there, slope, quintic_at(n_z, x));
+        }
+    }
+    (*end).drag += h * drag + (rain_drag_boundary(c, (*end).u) - rain_drag_boundary(c, s.u));
+    (*end).delay += h * delay;
+}
+
+// `end` with the closed-form part of the drag since `begin`.
+fn with_drag_boundary(c: Constants, begin: State, end: State) -> State {
+    var there = end;
+    if RAIN {
+        there.drag += rain_drag_boundary(c, end.u) - rain_drag_boundary(c, begin.u);
+    }
+    return there;
+}
+
 fn derivative(c: Constants, s: State) -> State {
-    return State(s.du, u_acceleration(c, s.u), s.dn, n_acceleration(c, s.n), drag_rate(c, s.u),
-        delay_rate(c, s.u, s.n.z));
+    var drag = 0.0;
+    var delay = 0.0;
+    if RAIN {
+        drag = rain_drag_rate(c, s.u, s.du);
+        if DELAY {
+            delay = rain_delay_rate(c, s.u, s.du, s.n.z);
+        }
+    } else {
+        drag = drag_rate(c, s.u);
+        delay = delay_rate(c, s.u, s.n.z);
+    }
+    return State(s.du, u_acceleration(c, s.u), s.dn, n_acceleration(c, s.n), drag, delay);
 }
 
 // s + h d.
@@ -102,7 +145,8 @@ fn rk4_step(c: Constants, s: State, h: f32) -> State {
     let k2 = derivative(c, advance(s, 0.5 * h, k1));
     let k3 = derivative(c, advance(s, 0.5 * h, k2));
     let k4 = derivative(c, advance(s, h, k3));
-    return advance(s, h, blend(1.0, blend(1.0 / 6.0, k1, 1.0 / 3.0, k2), 1.0, blend(1.0 / 3.0, k3, 1.0 / 6.0, k4)));
+    let sum = blend(1.0, blend(1.0 / 6.0, k1, 1.0 / 3.0, k2), 1.0, blend(1.0 / 3.0, k3, 1.0 / 6.0, k4));
+    return with_drag_boundary(c, s, advance(s, h, sum));
 }
 
 // Dormand & Prince 1980, RK5(4)7M.
@@ -124,7 +168,7 @@ fn dormand_prince_step(c: Constants, s: State, h: f32) -> Step {
     let k7 = derivative(c, end);
     let e = blend(1.0, blend(1.0, blend(71.0 / 57600.0, k1, -71.0 / 16695.0, k3), 1.0,
         blend(71.0 / 1920.0, k4, -17253.0 / 339200.0, k5)), 1.0, blend(22.0 / 525.0, k6, -1.0 / 40.0, k7));
-    return Step(end, h * error_norm(c, end, e));
+    return Step(with_drag_boundary(c, s, end), h * error_norm(c, end, e));
 }
 
 fn error_norm(c: Constants, s: State, error: State) -> f32 {
@@ -140,6 +184,9 @@ fn error_norm(c: Constants, s: State, error: State) -> f32 {
 fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
     let curvature = abs(u_acceleration(c, s.u));
+    if RAIN {
+        return rain_step_limit(c, s, h);
+    }
     let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
     // With spin nothing is traced inside.
     if !SPINNING && s.u >= select(u_plus * (1.0 + HORIZON_ROOM), u_plus, leaves) {
@@ -150,9 +197,34 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     return select(1e30, limit, s.u > 0.3 * u_plus && !leaves);
 }
 
+// The same in Doran's chart.
+fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
+    let u_plus = 1.0 / c.r_plus;
+    let curvature = u_acceleration(c, s.u);
+    let relative = s.u / (abs(s.du) + sqrt(abs(curvature) * s.u));
+    let total = radial_energy(c, s.u);
+    let slope = 2.0 * c.a * (c.a * c.energy - c.angular_momentum) * s.u * s.du - curvature;
+    let advance = 1.5 * h * (total - s.du) / max(abs(slope), 1e-30);
+    let inside = s.u >= u_plus;
+    let beside = select(u_plus - s.u, min(s.u - u_plus, max(1.0 - c.r_minus * s.u, 0.0) / c.r_minus), inside);
+    let room = max(beside, HORIZON_ROOM * u_plus);
+    let in_room = clamp(1.2 * h, 0.03, 0.35) * room / (abs(s.du) + sqrt(abs(curvature) * room));
+    var limit = select(in_room, min(advance, 1.5 * h * relative), s.du < 0.0);
+    if inside {
+        limit = min(h * relative, select(in_room, advance, total >= 0.0));
+    }
+    return select(1e30, limit, s.u > 0.3 * u_plus);
+}
+
 // Inside the horizon with u' from the first integral (integrator.rs: held_inside).
 fn held_inside(c: Constants, s: State) -> State {
     var held = s;
+    if RAIN && STEP_LIMIT {
+        let w = radial_energy(c, s.u);
+        let d = (1.0 - c.r_plus * s.u) * (1.0 - c.r_minus * s.u);
+        let du = -sqrt(max(w * w - d * c.b * s.u * s.u, 0.0));
+        held.du = select(s.du, du, s.du < 0.0 && s.u * c.r_plus >= 1.0);
+    }
     if !SPINNING && STEP_LIMIT {
         let du = -sqrt(max(c.energy * c.energy + c.k * s.u * s.u * (2.0 * s.u - 1.0), 0.0));
         held.du = select(s.du, du, s.du < 0.0 && s.u * c.r_plus >= 1.0);
@@ -186,6 +258,14 @@ fn quintic_of_u(c: Constants, a: State, b: State, h: f32) -> Quintic {
 fn quintic_of_n_z(c: Constants, a: State, b: State, h: f32) -> Quintic {
     let hh = h * h;
     return quintic(a.n.z, a.dn.z * h, n_acceleration(c, a.n).z * hh, b.n.z, b.dn.z * h, n_acceleration(c, b.n).z * hh);
+}
+
+fn quintic_at(q: Quintic, x: f32) -> f32 {
+    return q.low.x + x * (q.low.y + x * (q.low.z + x * (q.high.x + x * (q.high.y + x * q.high.z))));
+}
+
+fn quintic_slope(q: Quintic, x: f32) -> f32 {
+    return q.low.y + x * (2.0 * q.low.z + x * (3.0 * q.high.x + x * (4.0 * q.high.y + x * 5.0 * q.high.z)));
 }
 
 // The fraction in [0, 1] where the value is 0, for end values of opposite sign (or 0): Newton's method in a shrinking

@@ -76,7 +76,11 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                 // Inside, the limit is all.
                 let limit = step_limit(c, state, settings.step);
                 let inside = state.u >= u_plus;
-                h = select(min(h, limit), select(limit, min(h_wish, limit), METHOD == METHOD_DORMAND_PRINCE), inside);
+                var within = limit;
+                if RAIN {
+                    within = min(limit, settings.step / turn_rate(c));
+                }
+                h = select(min(h, limit), select(within, min(h_wish, limit), METHOD == METHOD_DORMAND_PRINCE), inside);
             }
             let step = step_ray(c, state, h);
             if METHOD == METHOD_DORMAND_PRINCE {
@@ -144,13 +148,22 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
     return RayTrace(fate, steps, state, next, h, tau);
 }
 
+// The drag over what is left of a step, to first order.
+fn drag_over(c: Constants, s: State, rest: f32) -> f32 {
+    if RAIN {
+        return rain_drag_rate(c, s.u, s.du) * rest + rain_drag_boundary(c, s.u + s.du * rest)
+            - rain_drag_boundary(c, s.u);
+    }
+    return drag_rate(c, s.u) * rest;
+}
+
 // The state at infinity of an escaped ray; its `delay` holds tau.
 fn escape(c: Constants, traced: RayTrace) -> State {
     let partial = traced.h * quintic_root(quintic_of_u(c, traced.from_state, traced.to_state, traced.h));
     var there = step_ray(c, traced.from_state, partial).state;
     let rest = -there.u / there.du;
     there.n += there.dn * rest;
-    there.drag += drag_rate(c, 0.0) * rest;
+    there.drag += drag_over(c, there, rest);
     there.delay = traced.tau + partial + rest;
     return there;
 }
@@ -178,7 +191,7 @@ fn crossing_state(c: Constants, start: State, to: State, h: f32) -> CrossingStat
     var there = step_ray(c, start, partial).state;
     // The rest of N_z that rounding left, to first order.
     let rest = clamp(-there.n.z / there.dn.z, -0.1 * h, 0.1 * h);
-    there.drag += drag_rate(c, there.u) * rest;
+    there.drag += drag_over(c, there, rest);
     there.u += there.du * rest;
     there.n += there.dn * rest;
     return CrossingState(there, partial + rest);

@@ -99,7 +99,7 @@ fn crossing_place(crossing: Crossing) -> vec3<f32> {
 
 // Its straight distance from the camera, M.
 fn crossing_distance(crossing: Crossing) -> f32 {
-    return length(crossing_place(crossing) - frame.e_r.xyz / frame.observer_u);
+    return length(crossing_place(crossing) - frame.eye.xyz);
 }
 
 // Whether an edge of the disk that shows runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so

@@ -3,6 +3,7 @@
 // refine/traced.wgsl and refine/kerr.wgsl; knows no tables and no textures.
 
 #import constants
+#import camera/chart
 #import camera/observer
 #import camera/projection
 #import emit/occluder
@@ -30,8 +31,11 @@ var<private> kept_ratio: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
+    var delay = crossing.delay;
     if FOOTPRINTS {
-        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+        let offsets = chart_offsets(c, crossing.u);
+        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag - offsets.x);
+        delay += offsets.y;
     }
     if PARTS && PLANE && is_wanted(crossing.u) {
         kept_media[min(kept_given, CROSSINGS_KEPT)] = medium;
@@ -40,7 +44,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     }
     kept_count = min(crossing.order + 1u, CROSSINGS_KEPT);
     kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] =
-        vec4<f32>(crossing.u, azimuth, crossing.delay, crossing.du);
+        vec4<f32>(crossing.u, azimuth, delay, crossing.du);
 }
 
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {

@@ -26,6 +26,8 @@
 @group(0) @binding(2) var light_tables: texture_2d<f32>;
 
 const NOTHING: u32 = 0x7fc00000u;
+// From such an offset on, crossings have no delay.
+const NO_DELAY: f32 = 1e37;
 const INFINITE: u32 = 0x7f800000u;
 
 fn light_table(i: u32) -> vec4<f32> {
@@ -65,8 +67,8 @@ fn crossing_output(kind: u32, crossing: Crossing) -> vec4<u32> {
         return bitcast<vec4<u32>>(vec4<f32>(mass * to_scene(crossing_place(crossing)), f32(crossing.order)));
     }
     var bits = bitcast<vec4<u32>>(vec4<f32>(mass / crossing.u, crossing.place.azimuth, crossing.g,
-        mass * crossing.place.delay));
-    bits.w = select(bits.w, NOTHING, frame.rain == RAIN_CLOCK);
+        mass * (crossing.place.delay + frame.delay_offset)));
+    bits.w = select(bits.w, NOTHING, frame.delay_offset >= NO_DELAY);
     return bits;
 }
 
@@ -97,7 +99,7 @@ fn ray_output(kind: u32, seen: bool, whole: Record, first: Crossing, open: f32, 
             bits.x = select(NOTHING, select(elsewhere, bitcast<u32>(f32(first.order)), first.u > 0.0), seen);
         }
         case OUTPUT_DEFLECTION: {
-            let chart = frame.e_r.xyz * look.x + frame.e_theta.xyz * look.y + frame.e_phi.xyz * look.z;
+            let chart = frame.placed_r * look.x + frame.placed_theta * look.y + frame.placed_phi * look.z;
             let angle = arctan2(length(cross(chart, whole.sky)), dot(chart, whole.sky));
             bits.x = select(NOTHING, bitcast<u32>(angle), seen && escaped);
         }

@@ -147,14 +147,15 @@ fn crossing_shift(here: Record, crossing: Crossing) -> Shift {
     if ALL_EFFECTS {
         return Shift(crossing.g, crossing.g);
     }
-    let gravity = nu_static_observer(here.energy) / zamo_frequency(crossing.u, 0.0, here.energy, here.angular_momentum);
-    return visible_shift(crossing.g, gravity);
+    let seen = nu_static_observer(here.energy, here.angular_momentum);
+    return visible_shift(crossing.g, seen / zamo_frequency(crossing.u, 0.0, here.energy, here.angular_momentum));
 }
 
 fn sky_light(here: Record) -> vec3<f32> {
     var shift = Shift(here.sky_redshift, here.sky_redshift);
     if !ALL_EFFECTS {
-        shift = visible_shift(here.sky_redshift, nu_static_observer(here.energy) / here.energy);
+        let seen = nu_static_observer(here.energy, here.angular_momentum);
+        shift = visible_shift(here.sky_redshift, seen / here.energy);
     }
     var light = vec3<f32>(0.0);
     if SHOWS_STARS {
@@ -208,7 +209,7 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
         case VIEW_DEFLECTION: {
             let place = pixel_place(id);
             let n = look_direction(place.x, place.y);
-            let look = frame.e_r.xyz * n.x + frame.e_theta.xyz * n.y + frame.e_phi.xyz * n.z;
+            let look = frame.placed_r * n.x + frame.placed_theta * n.y + frame.placed_phi * n.z;
             var sky = here.sky;
             if in_sky {
                 sky = seen_sky(here).sky;

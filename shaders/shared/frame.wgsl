@@ -113,6 +113,22 @@ struct Frame {
     hole_mass: f32,
     // 1 where the occluder's things are lensed, else 0.
     occluder_lensed: f32,
+    // Columns that take directions along the observer's axes to the chart as hosts have them (Lens::placed), each with a
+    // number beside it: the delays of the camera's chart less those of records (1e38: it has none), and lapse and angular
+    // velocity of the static observer (StaticObserver) at a rain frame; a lapse of 0 where there is none.
+    placed_r: vec3<f32>,
+    delay_offset: f32,
+    placed_theta: vec3<f32>,
+    static_lapse: f32,
+    placed_phi: vec3<f32>,
+    static_angular_velocity: f32,
+    // The observer's place as hosts have it, M.
+    eye: vec4<f32>,
+    // RainTriad of src/physics/observer.rs: sin_turn, cos_turn, rho, circumference.
+    rain_triad: vec4<f32>,
+    // OffsetSeries of src/physics/rain.rs: poles, outer before inner, and two terms each; azimuth before time.
+    offset_poles: vec4<f32>,
+    offset_terms: array<vec4<f32>, OFFSET_PAIRS>,
     // The bands of the disk's turbulence, which do not drift.
     bands: array<Band, MOST_BANDS>,
     // 1/r, outer end first, outside which no matter with depth is.

@@ -3,6 +3,7 @@
 // that import it say which: traced/each.wgsl, traced/blocks.wgsl and traced/listed.wgsl.
 
 #import constants
+#import camera/chart
 #import camera/observer
 #import camera/projection
 #import emit/occluder
@@ -69,15 +70,18 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     }
     if crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y {
         var azimuth = 0.0;
+        var delay = crossing.delay;
         if AZIMUTH {
-            azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+            let offsets = chart_offsets(c, crossing.u);
+            azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag - offsets.x);
+            delay += offsets.y;
         }
         let g = frequency_ratio * redshift_at(c, crossing.u, crossing.du);
         if PARTS {
             keep_medium();
         }
         if KEEPS_RECORD {
-            let kept = vec4<f32>(crossing.u, g, azimuth, crossing.delay);
+            let kept = vec4<f32>(crossing.u, g, azimuth, delay);
             textureStore(record_disk, pixel, countOneBits(disk_orders), kept);
         }
         disk_orders |= 1u << crossing.order;

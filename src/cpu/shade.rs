@@ -68,7 +68,7 @@ impl<'a> Shader<'a> {
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share. `shown`: the part of the ray that is seen; where
     /// it ends, what is behind takes the sky's place.
     pub fn pixel_light(&self, here: &Record, shown: Option<Shown>) -> [f64; 4] {
-        let eye = self.lens.observer.frame.e_r * self.lens.observer.frame.r;
+        let eye = self.lens.place.e_r * self.lens.place.r;
         let mut light = [0.0; 3];
         let mut open = 1.0;
         let mut media = here.media.iter();

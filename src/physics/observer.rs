@@ -113,18 +113,19 @@ impl Momentum {
 
 /// The numbers that the rain triad at a place is made of.
 #[derive(Clone, Copy, Debug)]
-struct RainTriad {
+pub struct RainTriad {
     u: f64,
     /// sqrt(2 u).
     w: f64,
     /// rho / r.
-    rho: f64,
+    pub rho: f64,
     /// sqrt(1 + a^2 u^2).
     q: f64,
     /// Q / r, Q = sqrt(g_phph) / sin th.
-    circumference: f64,
-    sin_turn: f64,
-    cos_turn: f64,
+    pub circumference: f64,
+    /// sin d and cos d.
+    pub sin_turn: f64,
+    pub cos_turn: f64,
 }
 
 /// A momentum in Doran's chart.
@@ -397,7 +398,7 @@ impl LocalFrame {
         }
     }
 
-    fn rain_triad(&self) -> RainTriad {
+    pub fn rain_triad(&self) -> RainTriad {
         let u = 1.0 / self.r;
         let au = self.a * u;
         let w = (2.0 * u).sqrt();

@@ -90,9 +90,9 @@ pub struct OffsetSeries {
     /// sqrt(r+), sqrt(r-).
     roots: [f64; 2],
     /// What artanh(sqrt(r+) v) and artanh(sqrt(r-) v) are multiplied by.
-    poles: [DVec2; 2],
+    pub poles: [DVec2; 2],
     /// The coefficients of P in 2 v / v+ - 1.
-    terms: [DVec2; OFFSET_TERMS],
+    pub terms: [DVec2; OFFSET_TERMS],
 }
 
 impl OffsetSeries {

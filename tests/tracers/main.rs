@@ -12,6 +12,7 @@ mod eyes;
 mod frames;
 mod frusta;
 mod half;
+mod inside;
 mod jobs;
 mod kernels;
 mod lens;

@@ -89,7 +89,7 @@ impl GpuTracer {
     fn run(&mut self, scene: &Scene, starts: &[RayStart]) -> Result<Vec<RayEnd>> {
         let device = &self.device;
         let settings = ray_settings(scene);
-        let compiled = self.kernels.get(KernelKey::new(KernelKind::Rays, &[&variant(scene, &settings, true)]))?;
+        let compiled = self.kernels.get(KernelKey::new(KernelKind::Rays, &[&variant(scene, &settings, None)]))?;
         if self.ray_buffers.resources.is_none() {
             let bytes = |size: usize| (CHUNK * size) as u64;
             self.ray_buffers.resources = Some([

@@ -112,6 +112,7 @@ const MAPS: Only = Only::AnyOf(&[(Choice::SHOWS_MILKY_WAY, 1), (Choice::SHOWS_MA
 const VIEWS_OF_LIGHT: Only = Only::NoneOf(&[(Choice::SHOWS_DEPTH, 1)]);
 const PLACES_KNOWN: Only = Only::AnyOf(&[(Choice::FOOTPRINTS, 1)]);
 const MIXED: Only = Only::AnyOf(&[(Choice::POWER_LAW, 1)]);
+const SPINS: Only = Only::AnyOf(&[(Choice::SPINNING, 1)]);
 const DEPTH: Only = Only::AnyOf(&[(Choice::PARTS, 1)]);
 /// The numbers are those of `PixelKind`.
 const EIGHT_BIT: Only = Only::NoneOf(&[(Choice::PIXELS, 1), (Choice::PIXELS, 2)]);
@@ -136,6 +137,7 @@ table! {
     SPINNING: FLAG, TRACING, set [(SPIN_0 | ENDS | COLUMNS, 0)];
     DELAY: FLAG, TRACING | COLUMNS | NODES | (OF_RECORDS & !TRACED), set [(ENDS, 0)];
     STEP_LIMIT: FLAG, TRACING;
+    RAIN: FLAG, TRACING, only SPINS;
     AZIMUTH: FLAG, PIXELS;
     KEEPS_RECORD: [], 0, set [(LISTED, 0)];
     OWN_RECORDS: FLAG, FILL;

@@ -184,6 +184,7 @@ fn all() -> Vec<(&'static str, String)> {
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
         GENERATION_FADE: f32 = bands::GENERATION_FADE;
         MOST_BANDS: u32 = bands::MOST_BANDS;
+        OFFSET_PAIRS: u32 = sizes::OFFSET_PAIRS;
         FILAMENT_COLUMNS: f32 = filaments::FILAMENT_SIDES[0];
         FILAMENT_ROWS: f32 = filaments::FILAMENT_SIDES[1];
         FILAMENT_LAYERS: f32 = filaments::FILAMENT_SIDES[2];

@@ -32,3 +32,5 @@ pub const EXPORT_VECTORS: usize = 4 + 3 * EXPORT_CROSSINGS;
 
 /// Volumes and hot spots of a frame at most.
 pub const MOST_MATTER: usize = Volume::MOST + HotSpot::MOST;
+/// Pairs of terms of `OffsetSeries` that a frame holds: f32 knows no more.
+pub const OFFSET_PAIRS: usize = 8;

@@ -81,6 +81,8 @@ variant! {
         SPINNING pub spinning: bool,
         DELAY pub delay: bool,
         STEP_LIMIT pub step_limit: bool,
+        /// Doran's chart: observers in the rain frame of a spinning hole.
+        RAIN pub rain: bool,
         /// Whether pixels keep where on the disk a crossing is; given rays always do.
         AZIMUTH pub azimuth: bool,
         /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none, or it is not

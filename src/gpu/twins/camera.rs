@@ -5,7 +5,8 @@ use super::inputs::{Inputs, Outputs};
 use super::scenes::{self, FRAME, FRAMES, Kind, View, push_look, push_place, view};
 use super::{Group, ROUNDING, SAME, twin};
 use crate::physics::geodesic::{Constants, State};
-use crate::physics::orbit::redshift;
+use crate::physics::orbit::{horizon_outer, redshift};
+use crate::physics::rain::offsets;
 use crate::scene::Projection;
 use crate::scene::observer::Lens;
 use crate::scene::record::polar_momentum;
@@ -67,6 +68,10 @@ fn look(kind: Kind) -> fn(&mut Inputs) {
             let view = Kind::Rain.push(i);
             push_look(i, view);
         },
+        Kind::SpinningRain => |i| {
+            let view = Kind::SpinningRain.push(i);
+            push_look(i, view);
+        },
     }
 }
 
@@ -94,7 +99,8 @@ fn put_begun(c: &Constants, s: &State, o: &mut Outputs) {
 }
 
 pub fn group() -> Group {
-    let [any, spinning, plain] = [Kind::Rain, Kind::Spinning, Kind::Static].map(Kind::constants);
+    let [any, spinning, plain, rain] =
+        [Kind::Rain, Kind::Spinning, Kind::Static, Kind::SpinningRain].map(Kind::constants);
     let (projection, observer) = ("camera/projection", "camera/observer");
     let points = [
         ("camera_point", (|i| place_in(i, Projection::Perspective)) as fn(&mut Inputs)),
@@ -213,10 +219,50 @@ pub fn group() -> Group {
         ("begin_local begin_zamo constants polar_momentum", Kind::Spinning, spinning),
         ("begin_local begin_zamo constants polar_momentum", Kind::Static, plain),
         ("begin_local begin_rain constants polar_momentum", Kind::Rain, any),
+        ("begin_local begin_spinning_rain constants polar_momentum", Kind::SpinningRain, rain),
     ];
     for (functions, kind, constants) in begins {
         twins.push(twin(observer, functions, BEGIN, look(kind), begun, UNIFORM).with(&constants));
     }
+    twins.push(
+        twin(
+            observer,
+            "begin_spinning_rain",
+            "enter_scene(); out_flag(begin_local(normalize(in3(1u))).has_light);",
+            |i| {
+                Kind::SpinningRain.push(i);
+                i.direction();
+            },
+            |i, o| o.flag(view(i).lens.observer.frame.start(i.v3(1).normalize()).is_some()),
+            SAME,
+        )
+        .with(&rain),
+    );
+    twins.push(
+        twin(
+            "camera/chart",
+            "chart_offsets",
+            "enter_scene(); let c = begin_local(normalize(in3(1u))).c;
+             let offsets = chart_offsets(c, in1(4u)); out2(offsets);",
+            |i| {
+                let view = Kind::SpinningRain.push(i);
+                push_look(i, view);
+                // Nearer to the horizon u does not tell how near it is.
+                i.even(1e-3, 0.99 / horizon_outer(view.scene.hole.spin));
+            },
+            |i, o| {
+                let a = view(i).scene.hole.spin;
+                let expected = offsets(a, i.x(4));
+                // Terms of the size of 1 / (r+ - r-) cancel.
+                let size = 2.0 / ((1.0 - a) * (1.0 + a)).sqrt();
+                o.near(expected.azimuth, size);
+                o.near(expected.time, size + 3.0 / i.x(4).sqrt());
+            },
+            // Terms of the series that f32 leaves out, and the uniform.
+            UNIFORM,
+        )
+        .with(&rain),
+    );
     twins.push(
         twin(
             observer,
@@ -282,6 +328,6 @@ pub fn group() -> Group {
         )
         .with(&spinning),
     );
-    let head = ["#import camera/projection\n#import camera/observer\n", FRAME, FRAMES].concat();
+    let head = ["#import camera/projection\n#import camera/observer\n#import camera/chart\n", FRAME, FRAMES].concat();
     Group { name: "camera", head, twins, images: Vec::new, tables: scenes::tables }
 }

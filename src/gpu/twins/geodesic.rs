@@ -4,9 +4,10 @@
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::physics::geodesic::{Clock, Constants, State, rain_offset, wrap_angle};
-use crate::physics::integrator::nystrom_step;
+use crate::physics::integrator::{nystrom_step, step_limit};
 use crate::physics::metric::chart;
 use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::innermost_radius;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -121,9 +122,47 @@ pub fn rain_ray(i: &mut Inputs) {
     push_state(i, &s);
 }
 
-/// u' of such a ray.
+/// A ray of the rain frame of a spinning hole, and where it is after a few steps: inside the horizon or outside, not
+/// within 5 % of it unless it leaves, and on this side of infinity.
+pub fn random_spinning_rain_ray(i: &mut Inputs) -> (Constants, State) {
+    loop {
+        let a = i.random.even(-0.998, 0.998);
+        let r = i.random.even(1.02 * innermost_radius(a), 2.95);
+        let theta = i.random.even(0.1, PI - 0.1);
+        let frame = LocalFrame::rain(a, chart(r, theta, i.random.even(0.0, 6.0))).expect("a place");
+        let n = (i.random.direction() + DVec3::X * 0.4).normalize();
+        let Some((c, mut state)) = frame.start(n) else { continue };
+        let mut steps = i.random.below(8);
+        while steps > 0 && state.u > 0.05 {
+            let h = (0.2 / c.scale).min(step_limit(&c, &state, 0.2));
+            state = nystrom_step(&c, &state, h, false);
+            steps -= 1;
+        }
+        let beside = (1.0 - state.u * c.r_plus).abs() < 0.05 && (state.du > 0.0 || c.radial_energy(state.u) < 0.1);
+        // Far from where E is next to nothing, and where f32 and f64 choose another form by a hair.
+        let clear = c.energy == 1.0 && c.radial_energy(state.u) > 0.01 && state.du.abs() > 1e-3;
+        if clear && !beside && state.u > 1e-3 && state.u * 1.02 * innermost_radius(a) < 1.0 {
+            return (c, state);
+        }
+    }
+}
+
+pub fn spinning_rain_ray(i: &mut Inputs) {
+    let (c, s) = random_spinning_rain_ray(i);
+    push_constants(i, &c);
+    push_state(i, &s);
+}
+
+/// u' of a ray of `rain_ray`.
 fn outward(c: &Constants, u: f64) -> f64 {
     -(1.0 - c.k * u * u * (1.0 - 2.0 * u)).max(0.0).sqrt()
+}
+
+/// The size of the terms of x that may cancel, for a ray of a rain frame.
+fn rain_size(c: &Constants, s: &State) -> f64 {
+    let size = c.energy + (c.a * c.a + (c.a * c.angular_momentum).abs()) * s.u * s.u;
+    let x = c.advanced_rate(s.u, s.du).abs();
+    1.0 + x * (1.0 + size / (c.radial_energy(s.u) - s.du)) + size / c.horizon_function(s.u).abs() + s.du.abs()
 }
 
 fn rate(i: &Inputs, o: &mut Outputs) {
@@ -166,6 +205,7 @@ fn of_unit_energy(c: &Constants) -> Constants {
 pub fn group() -> Group {
     let spinning = [("SPINNING", 1.0), ("DELAY", 1.0)];
     let plain = [("SPINNING", 0.0), ("DELAY", 1.0)];
+    let rain = [("SPINNING", 1.0), ("DELAY", 1.0), ("RAIN", 1.0)];
     let geodesic = "geodesic/geodesic";
     let twins = vec![
         twin(
@@ -300,7 +340,7 @@ pub fn group() -> Group {
         .with(&spinning),
         twin(
             geodesic,
-            "delay_rate rain_delay_rate",
+            "delay_rate plain_rain_delay_rate",
             "out1(delay_rate(ray_constants(), in1(13u), in1(17u)));",
             rain_ray,
             rate,
@@ -360,6 +400,56 @@ pub fn group() -> Group {
             TRANSCENDENTAL,
         )
         .with(&plain),
+        twin(
+            geodesic,
+            "radial_energy advanced_rate signed_horizon_function turn_rate",
+            "let c = ray_constants(); let s = ray_state(13u);
+             out3(vec3<f32>(radial_energy(c, s.u), advanced_rate(c, s.u, s.du), turn_rate(c)));
+             out1(signed_horizon_function(c, s.u));",
+            spinning_rain_ray,
+            |i, o| {
+                let (c, s) = (constants(i), state(i, STATE));
+                let size = c.energy + (c.a * c.a + (c.a * c.angular_momentum).abs()) * s.u * s.u;
+                o.near(c.radial_energy(s.u), size);
+                // W - u' of what falls, and (W + u') / D of what does not, cancel.
+                let d = c.horizon_function(s.u);
+                let x = c.advanced_rate(s.u, s.du);
+                o.near(x, x.abs() * (1.0 + size / (c.radial_energy(s.u) - s.du)) + size / d.abs());
+                o.put(c.turn_rate());
+                o.near(d, 1.0 + s.u * c.r_plus);
+            },
+            TRANSCENDENTAL,
+        )
+        .with(&rain),
+        twin(
+            geodesic,
+            "rain_drag_rate rain_drag_boundary",
+            "let c = ray_constants(); let s = ray_state(13u);
+             out2(vec2<f32>(rain_drag_rate(c, s.u, s.du), rain_drag_boundary(c, s.u)));",
+            spinning_rain_ray,
+            |i, o| {
+                let (c, s) = (constants(i), state(i, STATE));
+                o.near(c.rain_drag_rate(s.u, s.du), rain_size(&c, &s));
+                o.near(c.rain_drag_boundary(s.u), 1.0);
+            },
+            TRANSCENDENTAL,
+        )
+        .with(&rain),
+        twin(
+            geodesic,
+            "rain_delay_rate delay_boundary",
+            "let c = ray_constants(); let s = ray_state(13u);
+             out2(vec2<f32>(rain_delay_rate(c, s.u, s.du, s.n.z), delay_boundary(c, s.u, s.du)));",
+            spinning_rain_ray,
+            |i, o| {
+                let (c, s) = (constants(i), state(i, STATE));
+                let size = (c.k.abs() + c.b.abs() * s.u) * s.u * (1.0 + s.u.ln().abs()) * (1.0 + s.u);
+                o.near(c.delay_rate(s.u, s.du, s.n.z), size + 2.0 * rain_size(&c, &s) / s.u);
+                o.near(c.delay_boundary(s.u, s.du), (s.du / s.u).abs() + s.du.abs());
+            },
+            TRANSCENDENTAL,
+        )
+        .with(&rain),
         twin(
             geodesic,
             "clock_offset",

@@ -2,7 +2,8 @@
 //! Twins of geodesic/integrator and geodesic/trace.
 
 use super::geodesic::{
-    BEHIND, RAYS, STATE, constants, plain_ray, push_state, rain_ray, random_ray, spinning_ray, state,
+    BEHIND, RAYS, STATE, constants, plain_ray, push_constants, push_state, rain_ray, random_ray,
+    random_spinning_rain_ray, spinning_rain_ray, spinning_ray, state,
 };
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, twin};
@@ -40,6 +41,26 @@ fn with_step(i: &mut Inputs, ray: fn(&mut Inputs), [low, high]: [f64; 2]) {
         let end = nystrom_step(&c, &s, i.x(BEHIND), false);
         // Beyond infinity and beside the horizon no delay is asked for.
         if end.u > 0.02 * s.u && end.u * c.r_plus < 0.9 {
+            return;
+        }
+    }
+}
+
+/// The same where rates change from 1 to 30 over it, inside the horizon.
+const RAIN_STEP: f64 = 1e-5;
+
+/// A ray of the rain frame of a spinning hole, and a step in tau behind it.
+fn with_rain_step(i: &mut Inputs, [low, high]: [f64; 2]) {
+    loop {
+        i.clear();
+        let (c, s) = random_spinning_rain_ray(i);
+        push_constants(i, &c);
+        push_state(i, &s);
+        let sigma = i.random.even(low, high);
+        let h = (sigma / c.scale).min(step_limit(&c, &s, sigma));
+        i.push(h);
+        let end = nystrom_step(&c, &s, h, false);
+        if end.u > 0.02 * s.u && (1.0 - end.u * c.r_plus).abs() > 0.05 && c.radial_energy(end.u) > 0.01 {
             return;
         }
     }
@@ -102,6 +123,8 @@ pub fn group() -> Group {
     let nystrom = method(code(Method::Nystrom));
     let (rk4, dormand_prince) = (method(code(Method::Rk4)), method(code(Method::DormandPrince)));
     let plain = [("SPINNING", 0.0), ("DELAY", 1.0), ("METHOD", code(Method::Nystrom))];
+    let in_rain = |method: Method| [("SPINNING", 1.0), ("DELAY", 1.0), ("RAIN", 1.0), ("METHOD", code(method))];
+    let (rain, rain_rk4) = (in_rain(Method::Nystrom), in_rain(Method::Rk4));
     let (integrator, ray) = ("geodesic/integrator", "geodesic/trace");
     const STEP_RAY: &str = "out_state(step_ray(ray_constants(), ray_state(13u), in1(23u)).state);";
     let twins =
@@ -124,6 +147,45 @@ pub fn group() -> Group {
             STEP,
         )
         .with(&plain),
+        twin(
+            integrator,
+            "step_ray nystrom_step rain_step quintic_at quintic_slope",
+            STEP_RAY,
+            |i| with_rain_step(i, [0.02, 0.15]),
+            |i, o| { stepped(i, o, Method::Nystrom); },
+            RAIN_STEP,
+        )
+        .with(&rain),
+        twin(
+            integrator,
+            "step_ray rk4_step derivative with_drag_boundary",
+            STEP_RAY,
+            |i| with_rain_step(i, [0.02, 0.15]),
+            |i, o| {
+                let (c, s, h) = (constants(i), state(i, STATE), i.x(BEHIND));
+                put_state(o, &s, &rk4_step(&c, &s, h), h);
+            },
+            RAIN_STEP,
+        )
+        .with(&rain_rk4),
+        twin(
+            integrator,
+            "step_limit rain_step_limit held_inside",
+            "let s = ray_state(13u); out1(step_limit(ray_constants(), s, in1(23u)));
+             out_state(held_inside(ray_constants(), s));",
+            |i| {
+                spinning_rain_ray(i);
+                i.even(0.02, 0.3);
+            },
+            |i, o| {
+                let (c, s) = (constants(i), state(i, STATE));
+                let limit = step_limit(&c, &s, i.x(BEHIND)).min(1e30);
+                o.near(limit, limit.min(1.0));
+                put_state(o, &s, &held_inside(&c, s), 0.0);
+            },
+            RAIN_STEP,
+        )
+        .with(&rain),
         twin(
             integrator,
             "step_ray rk4_step derivative advance blend",
@@ -206,7 +268,7 @@ pub fn group() -> Group {
         .with(&nystrom),
         twin(
             ray,
-            "crossing_state find_crossing",
+            "crossing_state find_crossing drag_over",
             "let x = find_crossing(ray_constants(), ray_state(13u), ray_state(13u), ray_state(23u), in1(33u), 3u);
              out1(x.u); out3(chart_direction(x.n, x.drag)); out1(x.delay); out_word(x.order);",
             |i| push_sign_change(i, spinning_ray, |s| s.n.z),

@@ -148,10 +148,11 @@ pub fn group() -> Group {
         twin(
             shift,
             "nu_static_observer",
-            "enter_scene(); out1(nu_static_observer(in1(1u)));",
+            "enter_scene(); out1(nu_static_observer(in1(1u), in1(2u)));",
             |i| {
                 [Kind::Spinning, Kind::Static, Kind::Rain][i.random.below(3) as usize].push(i);
                 i.even(0.05, 2.0);
+                i.even(-2.0, 2.0);
             },
             |i, o| {
                 let frame = view(i).lens.observer.frame;

@@ -544,7 +544,7 @@ pub fn group() -> Group {
         ),
         twin(
             "emit/course",
-            "quintic_at quintic_slope cubic_at",
+            "cubic_at",
             "let q = quintic(in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u)); out1(quintic_at(q, in1(6u)));
              out1(quintic_slope(q, in1(6u))); out1(cubic_at(in4(0u), in1(6u)));",
             |i| {

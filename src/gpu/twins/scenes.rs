@@ -7,9 +7,9 @@ use super::sky;
 use crate::gpu::frame::plan::f32_settings::for_f32;
 use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::physics::metric::chart;
-use crate::physics::orbit::horizon_outer;
+use crate::physics::orbit::{horizon_outer, innermost_radius};
 use crate::scene::observer::Lens;
-use crate::scene::{Camera, Effects, Frustum, Motion, Projection, Region, Scene, Sky};
+use crate::scene::{Camera, Chart, Effects, Frustum, Motion, Projection, Region, Scene, Sky};
 use crate::scene::{DiskReference, EmissionLaw};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
@@ -39,15 +39,22 @@ pub enum Kind {
     Static,
     /// Spin 0, falling observers outside the photon sphere and inside the horizon.
     Rain,
+    /// A spinning hole, and falling and moving observers within r = 3 M, inside the horizon too.
+    SpinningRain,
 }
 
 pub const EACH: u32 = 16;
 
 impl Kind {
     /// Whether rays of it spin, and by which clock: the pipeline constants.
-    pub fn constants(self) -> [(&'static str, f64); 3] {
-        let spinning = f64::from(u8::from(matches!(self, Self::Spinning)));
-        [("SPINNING", spinning), ("DELAY", 1.0), ("PROJECTION", f64::from(crate::gpu::kernel::choices::FROM_UNIFORM))]
+    pub fn constants(self) -> [(&'static str, f64); 4] {
+        let flag = |on: bool| f64::from(u8::from(on));
+        [
+            ("SPINNING", flag(matches!(self, Self::Spinning | Self::SpinningRain))),
+            ("DELAY", 1.0),
+            ("RAIN", flag(matches!(self, Self::SpinningRain))),
+            ("PROJECTION", f64::from(crate::gpu::kernel::choices::FROM_UNIFORM)),
+        ]
     }
 
     /// Pushes the number of one of its scenes.
@@ -66,7 +73,7 @@ pub fn view(i: &Inputs) -> &'static View {
 pub fn views() -> &'static [View] {
     static VIEWS: OnceLock<Vec<View>> = OnceLock::new();
     VIEWS.get_or_init(|| {
-        let kinds = [Kind::Spinning, Kind::Static, Kind::Rain];
+        let kinds = [Kind::Spinning, Kind::Static, Kind::Rain, Kind::SpinningRain];
         kinds.into_iter().flat_map(|kind| (0..EACH).map(move |number| made(kind, number))).collect()
     })
 }
@@ -82,6 +89,12 @@ fn made(kind: Kind, number: u32) -> View {
         Kind::Rain => {
             scene.camera.motion = Motion::FreeFall;
             r = if number.is_multiple_of(2) { random.even(1.0, 2.9) } else { r };
+        }
+        Kind::SpinningRain => {
+            scene.hole.spin = random.even(-0.998, 0.998);
+            scene.camera.motion = [Motion::FreeFall, Motion::Velocity][number as usize % 2];
+            scene.camera.chart = Chart::Rain;
+            r = random.even(1.05 * innermost_radius(scene.hole.spin).max(0.1), 2.9);
         }
     }
     if number % 8 == 7 {
@@ -105,6 +118,7 @@ fn made(kind: Kind, number: u32) -> View {
         fov_y: random.even(0.3, 1.5),
         velocity: random.direction() * random.even(0.0, 0.9),
         motion: scene.camera.motion,
+        chart: scene.camera.chart,
         frustum: Frustum { left: -0.9, right: random.even(-0.5, 0.8), down: 0.1, up: random.even(0.2, 1.4) },
         jitter: 0.5 * random.direction().truncate(),
         ..Camera::plain()
@@ -162,7 +176,7 @@ pub fn push_look(i: &mut Inputs, view: &View) -> DVec3 {
     let frame = &view.lens.observer.frame;
     loop {
         let n = i.random.direction();
-        if frame.momenta().energy(n) > 0.02 {
+        if frame.momenta().energy(n) > 0.02 && frame.start(n).is_some() {
             return i.vector(n);
         }
     }

@@ -2,6 +2,7 @@
 //! Settings of the f64 tracer brought to what f32 can do, and what the tracing kernels are compiled with for them.
 
 use crate::gpu::kernel::variant::TraceVariant;
+use crate::physics::observer::LocalFrame;
 use crate::physics::trace::Settings;
 use crate::scene::{Method, Projection, Scene};
 
@@ -24,13 +25,16 @@ pub(in crate::gpu) fn ray_settings(scene: &Scene) -> Settings {
 }
 
 /// The variant in which the tracing kernels of a scene are compiled; pixels add what their shading needs.
-pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> TraceVariant {
+/// `frame`: that of a frame's observer, `None` for given rays.
+pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, frame: Option<&LocalFrame>) -> TraceVariant {
     let spinning = scene.hole.spin != 0.0;
     TraceVariant {
         method: settings.method.into(),
         spinning,
         delay: settings.delay,
-        step_limit: spinning || settings.delay || inside_horizon,
+        // Given rays may begin inside the horizon.
+        step_limit: spinning || settings.delay || frame.is_none_or(|frame| frame.r <= 2.0),
+        rain: spinning && frame.is_some_and(|frame| frame.rain),
         azimuth: false,
         matter: None,
         projection: Some(Projection::Perspective),

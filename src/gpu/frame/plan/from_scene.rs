@@ -141,14 +141,13 @@ impl Planner<'_> {
             Some(_) if hidden => 1,
             Some(_) => settings.max_crossings as u32,
         };
-        let inside = observer.r <= 2.0;
         RecordSetup {
             source: RecordSource { delay, pattern, moving, maker },
             variant: TraceVariant {
                 azimuth: pattern,
                 matter: matter_variant(&emitters.volumes, scene),
                 projection,
-                ..variant(scene, settings, inside)
+                ..variant(scene, settings, Some(&observer))
             },
             half,
             crossings,

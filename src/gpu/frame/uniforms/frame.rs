@@ -9,7 +9,7 @@ use crate::emit::bands::MOST_BANDS;
 use crate::emit::half::Evenness;
 use crate::emit::thin_disk::SoftEdges;
 use crate::error::Result;
-use crate::gpu::kernel::sizes::MOST_MATTER;
+use crate::gpu::kernel::sizes::{MOST_MATTER, OFFSET_PAIRS};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::geodesic::Clock;
 use crate::physics::lens::critical::CurveLevel;
@@ -23,7 +23,7 @@ use crate::scene::{EmissionLaw, Projection, Scene};
 use crate::sky::least_patch;
 use crate::tracer::{FrameRequest, Tile};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec3, Vec4};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -101,6 +101,16 @@ pub struct FrameUniform {
     occluder_origin: [f32; 2],
     hole_mass: f32,
     occluder_lensed: f32,
+    placed_r: Vec3,
+    delay_offset: f32,
+    placed_theta: Vec3,
+    static_lapse: f32,
+    placed_phi: Vec3,
+    static_angular_velocity: f32,
+    eye: Vec4,
+    rain_triad: Vec4,
+    offset_poles: Vec4,
+    offset_terms: [Vec4; OFFSET_PAIRS],
     bands: [BandUniform; MOST_BANDS],
     depth_u: [f32; 2],
     matter_count: u32,
@@ -135,7 +145,8 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         max_steps, max_crossings, rain, effects, view, pattern_seed, first_band, milky_way_size, map_size, projection,
         medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, shown_edges,
         least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x, occluder_origin,
-        hole_mass, occluder_lensed, bands, depth_u, matter_count, matter_delay, matter);
+        hole_mass, occluder_lensed, placed_r, delay_offset, placed_theta, static_lapse, placed_phi,
+        static_angular_velocity, eye, rain_triad, offset_poles, offset_terms, bands, depth_u, matter_count, matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, curve_samples, light_origin,
         image_origin, pixels_first, pixels_row);
     [frame, pass]
@@ -152,6 +163,23 @@ fn zamo(frame: &LocalFrame) -> [f64; 4] {
     let d = (1.0 - horizon_outer(a) * u) * (1.0 - horizon_inner(a) * u);
     let big_a = (1.0 + au2).powi(2) - d * au2 * frame.sin * frame.sin;
     [zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt()]
+}
+
+/// `RainTriad`; 0 in other frames.
+fn rain_triad(frame: &LocalFrame) -> Vec4 {
+    if !frame.rain {
+        return Vec4::ZERO;
+    }
+    let triad = frame.rain_triad();
+    Vec4::from_array(f32s([triad.sin_turn, triad.cos_turn, triad.rho, triad.circumference]))
+}
+
+/// The poles and the first terms of `OffsetSeries`; 0 without one.
+fn offsets(frame: &LocalFrame) -> (Vec4, [Vec4; OFFSET_PAIRS]) {
+    let Some(series) = &frame.offsets else { return (Vec4::ZERO, [Vec4::ZERO; OFFSET_PAIRS]) };
+    let pair = |first: DVec2, second: DVec2| Vec4::from_array(f32s([first.x, first.y, second.x, second.y]));
+    let terms = std::array::from_fn(|i| pair(series.terms[2 * i], series.terms[2 * i + 1]));
+    (pair(series.poles[0], series.poles[1]), terms)
 }
 
 fn f32s<const N: usize>(numbers: [f64; N]) -> [f32; N] {
@@ -188,9 +216,6 @@ impl FrameUniform {
     pub fn new(scene: &Scene, emitters: &Emitters, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
-        if frame.rain && a != 0.0 {
-            return Err(crate::error::Error::unsupported("the GPU tracer does not know the chart RAIN yet"));
-        }
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
@@ -206,6 +231,8 @@ impl FrameUniform {
         let plunge = scene.matter().plunge.map_or([0.0; 4], |p| [p.isco, p.energy, p.spin_term, p.x]);
         let [plunge_isco, plunge_energy, plunge_spin_term, plunge_x] = f32s(plunge);
         let occluder = scene.occluder.as_ref();
+        let static_observer = frame.static_observer();
+        let (rain_triad, (offset_poles, offset_terms)) = (rain_triad(frame), offsets(frame));
         Ok(Self {
             right: lens.axes.x_axis.as_vec3(),
             pixel_angle: lens.mapping.pixel_angle as f32,
@@ -279,6 +306,16 @@ impl FrameUniform {
             occluder_origin: occluder.map_or([0.0; 2], |occluder| occluder.origin.map(|v| v as f32)),
             hole_mass: occluder.map_or(1.0, |_| scene.hole.mass as f32),
             occluder_lensed: f32::from(occluder.is_some_and(|occluder| occluder.lensed)),
+            placed_r: lens.placed(DVec3::X).as_vec3(),
+            delay_offset: if lens.delay_offset.is_nan() { 1e38 } else { lens.delay_offset as f32 },
+            placed_theta: lens.placed(DVec3::Y).as_vec3(),
+            static_lapse: static_observer.map_or(0.0, |observer| observer.lapse) as f32,
+            placed_phi: lens.placed(DVec3::Z).as_vec3(),
+            static_angular_velocity: static_observer.map_or(0.0, |observer| observer.angular_velocity) as f32,
+            eye: padded(lens.place.e_r * lens.place.r),
+            rain_triad,
+            offset_poles,
+            offset_terms,
             bands: turbulence.map_or([BandUniform::zeroed(); MOST_BANDS], |t| BandUniform::all(&t.bands)),
             depth_u: range(emitters.depth_u()),
             matter_count,

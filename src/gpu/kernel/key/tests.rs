@@ -19,10 +19,11 @@ const MOST_KERNELS: u64 = 42_000_000_000;
 
 /// Constants that kernels mention and leave at WGSL's default: those of rays that tables are made of and of samples
 /// that tables do not hold, which are integrated as AUTO does, without matter.
-const LEFT: [(Choice, u32); 16] = [
+const LEFT: [(Choice, u32); 17] = [
     (Choice::METHOD, NODES | TABLE_RAYS),
     (Choice::SPINNING, NODES | KERR | DEFERRED),
     (Choice::STEP_LIMIT, TABLE_RAYS),
+    (Choice::RAIN, SPIN_0 | NODES | ENDS | COLUMNS | TABLE_RAYS),
     (Choice::KEEPS_RECORD, PIXELS),
     (Choice::MOVING, PIXELS | (TRACED & !EXPORT)),
     (Choice::PARTS, RAYS | TABLE_RAYS),

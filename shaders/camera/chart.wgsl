@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Doran's chart of a spinning hole beside that of Boyer and Lindquist, in which matter moves: by how much azimuths and
+// times differ. Mirrors `OffsetSeries` of src/physics/rain.rs, whose formulas it takes from the frame.
+
+#import constants
+#import geodesic/geodesic
+#import shared/frame
+
+// Doran's azimuth and time less those of Boyer and Lindquist at u, outside the horizon; 0 without RAIN.
+fn chart_offsets(c: Constants, u: f32) -> vec2<f32> {
+    if !RAIN {
+        return vec2<f32>(0.0);
+    }
+    let v = sqrt(u);
+    let outer = sqrt(c.r_plus) * v;
+    let inner = sqrt(c.r_minus) * v;
+    // artanh(x) = ln((1 + x)^2 / (1 - x^2)) / 2.
+    let rest = max(1.0 - c.r_plus * u, HORIZON_ROOM);
+    let logs = 0.5 * (frame.offset_poles.xy * log((1.0 + outer) * (1.0 + outer) / rest)
+        + frame.offset_poles.zw * log((1.0 + inner) * (1.0 + inner) / max(1.0 - c.r_minus * u, HORIZON_ROOM)));
+    // Clenshaw 1955: from b(k + 1) and b(k + 2), those of two terms a turn.
+    let x = 2.0 * outer - 1.0;
+    var first = vec2<f32>(0.0);
+    var second = vec2<f32>(0.0);
+    for (var i = OFFSET_PAIRS - 1u; i > 0u; i--) {
+        let pair = frame.offset_terms[i];
+        second = pair.zw + 2.0 * x * first - second;
+        first = pair.xy + 2.0 * x * second - first;
+    }
+    let pair = frame.offset_terms[0];
+    second = pair.zw + 2.0 * x * first - second;
+    let sum = logs + pair.xy + x * second - first;
+    return -2.8284271247 * sum + vec2<f32>(0.0, 2.8284271247 / v);
+}

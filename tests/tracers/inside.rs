@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Cameras in the chart RAIN about a spinning hole: the GPU's pictures against the CPU's, inside the horizon and beside
+//! it, with matter of every kind; and a fall through r = 3 M, where tracers change charts, and through r+.
+
+use crate::frames::{cpu, floats, gpu, picture};
+use bhr::image::PixelFormat;
+use bhr::renderer::Renderer;
+use bhr::scene::{Camera, Chart, Disk, HotSpot, Motion, Scene, Sky, View, Volume, VolumeResolution};
+use glam::DVec3;
+
+const SIZE: [u32; 2] = [160, 90];
+
+/// A camera at (r, theta, azimuth) of the chart RAIN, M = 1, which looks across the hole.
+fn camera(motion: Motion, [r, theta, azimuth]: [f64; 3]) -> Camera {
+    let position = DVec3::new(theta.sin() * azimuth.cos(), theta.sin() * azimuth.sin(), theta.cos()) * r;
+    Camera {
+        position,
+        forward: position.cross(DVec3::Z) - position * 0.4 + DVec3::new(0.1, 0.2, -0.3) * r,
+        fov_y: 1.6,
+        motion,
+        velocity: DVec3::new(0.3, -0.2, 0.25),
+        chart: Chart::Rain,
+        ..Camera::plain()
+    }
+}
+
+type Set = fn(&mut Scene);
+
+/// What shines besides the sky.
+fn matter() -> [(&'static str, Set); 5] {
+    [
+        ("a disk", |scene| scene.disk = Some(Disk { turbulence: 0.0, ..Disk::plain() })),
+        ("a turbulent disk", |scene| scene.disk = Some(Disk { turbulence: 1.0, opacity: 0.7, ..Disk::plain() })),
+        ("clouds", |scene| {
+            (scene.disk, scene.time) = (None, 40.0);
+            scene.volumes = [Volume { turbulence: 1.0, ..Volume::default() }].into_iter().collect();
+        }),
+        ("a spot and a halo", |scene| {
+            scene.disk = Some(Disk::plain());
+            scene.volumes = [Volume { turbulence: 0.0, ..Volume::default() }].into_iter().collect();
+            scene.hot_spots = [HotSpot::default()].into_iter().collect();
+        }),
+        ("a plunging disk", |scene| scene.disk = Some(Disk { plunges: true, ..Disk::plain() })),
+    ]
+}
+
+/// Spin, place, motion.
+fn places() -> [(f64, [f64; 3], Motion); 12] {
+    use Motion::{FreeFall, Static, Velocity};
+    [
+        (0.9, [1.43588989, 1.3, 0.4], FreeFall),
+        (0.9, [1.2, 1.3, 0.4], FreeFall),
+        (0.9, [0.7, 1.2, 2.0], Velocity),
+        (0.9, [0.57, 1.0, -2.0], FreeFall),
+        (0.9, [1.6, 1.4, 1.0], Velocity),
+        (0.9, [2.99, 1.5, 0.4], FreeFall),
+        (0.5, [1.0, 1.3, 3.0], Velocity),
+        (0.5, [0.3, 0.2, 3.0], FreeFall),
+        (-0.7, [1.1, 2.0, 1.0], Velocity),
+        (0.99, [1.05, 1.4, 0.0], FreeFall),
+        (0.2, [1.9, 1.57, 5.0], Velocity),
+        (0.9, [2.2, 1.1, 0.4], Static),
+    ]
+}
+
+/// The picture that a tracer makes of a scene.
+fn seen(renderer: &mut Renderer, format: PixelFormat, set: &dyn Fn(&mut Scene)) -> Vec<u8> {
+    renderer.scene = Scene::plain();
+    renderer.scene.sky.flags = Sky::GRID | Sky::STARS;
+    set(&mut renderer.scene);
+    picture(renderer, format, SIZE, None, false)
+}
+
+#[test]
+fn the_tracers_agree() {
+    let (mut cpu, mut gpu) = (cpu(), gpu());
+    for (i, (spin, place, motion)) in places().into_iter().enumerate() {
+        let (name, shines) = matter()[i % matter().len()];
+        let set = |scene: &mut Scene| {
+            scene.hole.spin = spin;
+            scene.camera = camera(motion, place);
+            shines(scene);
+            scene.quality.volume_resolution = VolumeResolution::Full;
+        };
+        let [a, b] = [&mut cpu, &mut gpu].map(|renderer| seen(renderer, PixelFormat::Rgba8Srgb, &set));
+        let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
+        let count = pixels.len();
+        let off = |limit: u8| {
+            let differs = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > limit);
+            pixels.clone().filter(|pair| differs(*pair)).count()
+        };
+        let lit = a.chunks_exact(4).filter(|pixel| pixel[..3].iter().any(|v| *v > 8)).count();
+        let (beyond, far) = (off(2), off(24));
+        println!(
+            "spin {spin}, {place:?}, {motion:?}, {name}: {lit} of {count} lit; {beyond} beyond 2, {far} beyond 24"
+        );
+        assert!(lit > count / 20, "spin {spin}, {place:?}, {name}: {lit} pixels are lit");
+        // Stars and grid lines move by a hair.
+        assert!(beyond * 1000 <= count * 4 && far * 1000 <= count, "spin {spin}, {place:?}, {name}: {beyond}, {far}");
+    }
+}
+
+/// Numbers that depend on nothing but the ray: deflection and g of the sky.
+#[test]
+fn the_tracers_agree_on_views() {
+    let (mut cpu, mut gpu) = (cpu(), gpu());
+    for (spin, place, motion) in places() {
+        for view in [View::Deflection, View::Redshift, View::Order] {
+            let set = |scene: &mut Scene| {
+                (scene.hole.spin, scene.camera, scene.view) = (spin, camera(motion, place), view);
+                scene.disk = Some(Disk::plain());
+            };
+            let [a, b] = [&mut cpu, &mut gpu].map(|renderer| floats(&seen(renderer, PixelFormat::Rgba32F, &set)));
+            let far = a
+                .iter()
+                .zip(&b)
+                .step_by(4)
+                .filter(|(a, b)| a.is_nan() != b.is_nan() || (*a - *b).abs() > 2e-4 * (1.0 + a.abs()));
+            let far = far.count();
+            assert!(far * 400 < a.len(), "spin {spin}, {place:?}, {view:?}: {far} of {} pixels", a.len() / 4);
+        }
+    }
+}
