@@ -382,8 +382,11 @@ typedef struct BhrHoleInfo {
     double critical_impact_parameter;    /**< Spin 0: 3 sqrt(3) M; NaN with spin. */
     /** Spin 0: angular radius of the shadow as the camera's observer sees it, radians; NaN with spin. */
     double shadow_angular_radius;
-    double camera_radius;    /**< Boyer-Lindquist r of the camera. */
-    double camera_time_rate; /**< d tau / d t, the rate of the clock of the camera's observer. */
+    double camera_radius; /**< Boyer-Lindquist r of the camera. */
+    /** d tau / d t, the rate of the clock of the camera's observer; t is the time of BhrCamera.chart. */
+    double camera_time_rate;
+    /** r- = M - sqrt(M^2 - a^2), down to which the inside of a spinning hole is known; 0 without spin. @since 0.2.0 */
+    double inner_horizon_radius;
 } BhrHoleInfo;
 
 /** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
@@ -432,8 +435,10 @@ typedef int32_t BhrProjection;
  * frame or rays are asked for. */
 typedef int32_t BhrMotion;
 
-#define BHR_MOTION_STATIC 0    /**< At rest; with spin, the zero angular momentum observer (ZAMO). */
-#define BHR_MOTION_FREE_FALL 1 /**< Falls radially from rest at infinity, inside a spin-0 horizon too. */
+#define BHR_MOTION_STATIC 0 /**< At rest, outside the horizon; with spin, the zero angular momentum observer (ZAMO). */
+
+/** Falls from rest at infinity with E = 1 and L = Q = 0, inside the horizon too (with spin in chart RAIN). */
+#define BHR_MOTION_FREE_FALL 1
 
 /** On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
  * the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius). */
@@ -448,6 +453,15 @@ typedef int32_t BhrEye;
 #define BHR_EYE_LEFT 1   /**< The left eye. */
 #define BHR_EYE_RIGHT 2  /**< The right eye. */
 
+/** How bhr_camera_advance carries a camera's axes along. @since 0.2.0 */
+typedef int32_t BhrTransport;
+
+#define BHR_TRANSPORT_TRIAD 0 /**< Forward and up keep their angles to e_r, e_th and e_ph. */
+
+/** Forward and up stay parallel to themselves along the world line, as the axes of gyroscopes do. For cameras in free
+ * fall: FREE_FALL, ORBIT and VELOCITY. */
+#define BHR_TRANSPORT_PARALLEL 1
+
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {
     uint32_t struct_size;     /**< sizeof(BhrCamera). */
@@ -460,8 +474,8 @@ typedef struct BhrCamera {
     double fov_y;
     BhrMotion motion;  /**< BHR_MOTION_*. Default STATIC. */
     uint32_t reserved; /**< Reserved: 0. */
-    /** For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
-     * direction given at position. Default 0. */
+    /** For BHR_MOTION_VELOCITY: v / c against the observer of the chart's triad (by default the local static one, the
+     * ZAMO), |v| < 1; components as for a direction given at position. Default 0. */
     double velocity[3];
     /** For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
      * left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them. @since 0.2.0 */
@@ -480,6 +494,11 @@ typedef struct BhrCamera {
      * GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md. @since 0.2.0 */
     BhrEye eye;
     uint32_t reserved2; /**< Reserved: 0. @since 0.2.0 */
+    /** BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths
+     * and points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that
+     * is to go there is told in it from its begin. Default STATIC. @since 0.2.0 */
+    BhrChart chart;
+    BhrTransport transport; /**< BHR_TRANSPORT_*. Default TRIAD. @since 0.2.0 */
 } BhrCamera;
 
 /** Fills in the defaults. */
@@ -505,12 +524,14 @@ BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *cam
 BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /** Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
- * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
- * stays where it is, and on failure so does this one. *out_coordinate_time, unless NULL, becomes the scene time
- * that went by: add it to the time of bhr_set_time, and a fall through a spin-0 horizon is seamless
- * (docs/cameras.md).
+ * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, and a VELOCITY one falls freely from its velocity,
+ * which changes. BhrCamera.transport says how axes are carried along. The context's own camera stays where it is,
+ * and on failure so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that
+ * went by: add it to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in
+ * STATIC too (docs/cameras.md).
  * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
- * ends in the centre or, with spin, at the horizon; UNSUPPORTED for VELOCITY. */
+ * ends before: in the centre, at r- (1 + 1e-6), or in chart STATIC at the horizon; UNSUPPORTED for a STATIC camera
+ * with PARALLEL axes, and for more than 300,000 steps (some 10^5 M at r = 10 M). */
 BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context, BhrCamera *camera, double proper_time,
                                            double *out_coordinate_time);
 
@@ -1420,7 +1441,7 @@ void bhr_surface_destroy(BhrSurface *surface);
 typedef struct BhrRay {
     double position[3]; /**< Scene axes and lengths. */
     /** The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
-     * are along the frame that Directions, above, gives. */
+     * are along the frame that Directions, above, gives, in the chart of the context's camera. */
     double direction[3];
     /** nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies the hit's
      * redshifts. */
@@ -1432,11 +1453,13 @@ typedef struct BhrRay {
 /** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
     double radius;  /**< Boyer-Lindquist r, scene lengths. */
-    double azimuth; /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    double azimuth; /**< Boyer-Lindquist ph in the chart, (-pi, pi], of rays in chart RAIN too. */
     /** g = nu(camera) / nu(emitter on the disk's circular orbit); inside the ISCO that of falling matter with
      * BHR_DISK_PLUNGES, else NaN. */
     double redshift;
-    double delay; /**< Coordinate time since the photon left, scene lengths; NaN from inside the horizon. */
+    /** Coordinate time since the photon left, scene lengths; NaN from inside the horizon. In chart RAIN: rain time T
+     * at the ray's begin less the coordinate time t at which the photon left. */
+    double delay;
 } BhrCrossing;
 
 /** How a ray ends. */

@@ -8,7 +8,7 @@
 
 // Doran's azimuth and time less those of Boyer and Lindquist at u, outside the horizon; 0 without RAIN.
 fn chart_offsets(c: Constants, u: f32) -> vec2<f32> {
-    if !RAIN {
+    if !(SPINNING && RAIN) {
         return vec2<f32>(0.0);
     }
     let v = sqrt(u);

@@ -99,7 +99,7 @@ fn begin_ray(look: vec3<f32>) -> RayBegin {
 fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
-    if RAIN {
+    if SPINNING && RAIN {
         begin_spinning_rain(&begin, n);
     } else if !SPINNING && not_inlined(frame.rain) != 0u {
         begin_rain(&begin, n);

@@ -31,14 +31,14 @@ fn step_course(c: Constants, a: State, b: State, h: f32) -> StepCourse {
 }
 
 fn drag_slope(c: Constants, s: State) -> f32 {
-    if RAIN {
+    if SPINNING && RAIN {
         return rain_drag_rate(c, s.u, s.du) + c.a * s.du / (1.0 + sqrt(2.0 * max(s.u, 0.0)));
     }
     return drag_rate(c, s.u);
 }
 
 fn delay_slope(c: Constants, s: State) -> f32 {
-    if RAIN {
+    if SPINNING && RAIN {
         return rain_delay_rate(c, s.u, s.du, s.n.z);
     }
     return delay_rate(c, s.u, s.n.z);

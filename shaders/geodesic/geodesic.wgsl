@@ -165,11 +165,11 @@ fn delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
     if SPINNING && !RAIN {
         return coordinate_delay_boundary(c, u, du);
     }
-    if RAIN && c.energy != 1.0 {
+    if SPINNING && RAIN && c.energy != 1.0 {
         return 0.0;
     }
     let rain = 2.0 * du * log(u) - du / u - 2.0 * sqrt(2.0 / u) + 4.0 * log(1.0 + sqrt(2.0 * u));
-    return select(coordinate_delay_boundary(c, u, du), rain, RAIN || c.clock == CLOCK_RAIN);
+    return select(coordinate_delay_boundary(c, u, du), rain, SPINNING || c.clock == CLOCK_RAIN);
 }
 
 fn coordinate_delay_boundary(c: Constants, u: f32, du: f32) -> f32 {

@@ -107,7 +107,7 @@ fn rain_step(c: Constants, s: State, h: f32, end: ptr<function, State>) {
 // `end` with the closed-form part of the drag since `begin`.
 fn with_drag_boundary(c: Constants, begin: State, end: State) -> State {
     var there = end;
-    if RAIN {
+    if SPINNING && RAIN {
         there.drag += rain_drag_boundary(c, end.u) - rain_drag_boundary(c, begin.u);
     }
     return there;
@@ -116,7 +116,7 @@ fn with_drag_boundary(c: Constants, begin: State, end: State) -> State {
 fn derivative(c: Constants, s: State) -> State {
     var drag = 0.0;
     var delay = 0.0;
-    if RAIN {
+    if SPINNING && RAIN {
         drag = rain_drag_rate(c, s.u, s.du);
         if DELAY {
             delay = rain_delay_rate(c, s.u, s.du, s.n.z);
@@ -184,7 +184,7 @@ fn error_norm(c: Constants, s: State, error: State) -> f32 {
 fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
     let curvature = abs(u_acceleration(c, s.u));
-    if RAIN {
+    if SPINNING && RAIN {
         return rain_step_limit(c, s, h);
     }
     let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
@@ -219,7 +219,7 @@ fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
 // Inside the horizon with u' from the first integral (integrator.rs: held_inside).
 fn held_inside(c: Constants, s: State) -> State {
     var held = s;
-    if RAIN && STEP_LIMIT {
+    if SPINNING && RAIN && STEP_LIMIT {
         let w = radial_energy(c, s.u);
         let d = (1.0 - c.r_plus * s.u) * (1.0 - c.r_minus * s.u);
         let du = -sqrt(max(w * w - d * c.b * s.u * s.u, 0.0));

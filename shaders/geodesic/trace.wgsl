@@ -77,7 +77,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                 let limit = step_limit(c, state, settings.step);
                 let inside = state.u >= u_plus;
                 var within = limit;
-                if RAIN {
+                if SPINNING && RAIN {
                     within = min(limit, settings.step / turn_rate(c));
                 }
                 h = select(min(h, limit), select(within, min(h_wish, limit), METHOD == METHOD_DORMAND_PRINCE), inside);
@@ -150,7 +150,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
 
 // The drag over what is left of a step, to first order.
 fn drag_over(c: Constants, s: State, rest: f32) -> f32 {
-    if RAIN {
+    if SPINNING && RAIN {
         return rain_drag_rate(c, s.u, s.du) * rest + rain_drag_boundary(c, s.u + s.du * rest)
             - rain_drag_boundary(c, s.u);
     }
