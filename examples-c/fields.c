@@ -138,7 +138,7 @@ const Field VOLUME_FIELDS[] = {
      "0 .. 1: the contrast of structure that the matter carries along: a pattern P = e^(turbulence G) over its "
      "mean, G being noise of mean 0 and about variance 1", NULL},
     {"--clumping", OPTION_DOUBLE, offsetof(BhrVolume, clumping), NULL, 0.5, 3, "0.5 .. 3",
-     "0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments", NULL},
+     "0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments", NULL},
     {"--heating", OPTION_DOUBLE, offsetof(BhrVolume, heating), NULL, 0, 0.5, "0 .. 0.5",
      "0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter", NULL},
     {"--seed", OPTION_UINT64, offsetof(BhrVolume, seed), NULL, 0, 0, NULL,

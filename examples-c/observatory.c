@@ -94,7 +94,7 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
         {{"--distance-kpc", OPTION_DOUBLE, &s->target.distance, "D", "to the hole", NULL, "1e-3 to 1e8"},
          IMAGE | HOTSPOT},
         {{"--spin", OPTION_DOUBLE, &s->spin, "A", "a / M", NULL,
-          "-0.999 to 0.999"}, IMAGE | HOTSPOT},
+          "-0.9999 to 0.9999"}, IMAGE | HOTSPOT},
         {{"--inclination", OPTION_DEGREES, &s->inclination, "DEG",
           "between the spin and the way to us", NULL, "0 to 180"},
          IMAGE | HOTSPOT},

@@ -32,7 +32,7 @@ static const SceneOption TABLE[] = {
      "of the preset: a thin disk, a volume, or the volume where it is fast", PRESET_MATTERS},
 
     {"--mass", SCENE_HOLE, OPTION_DOUBLE, AT(scene.mass), "M", "above 0", "in scene lengths: the scale", NULL},
-    {"--spin", SCENE_HOLE, OPTION_DOUBLE, AT(scene.spin), "A", "-0.999 to 0.999", "a / M", NULL},
+    {"--spin", SCENE_HOLE, OPTION_DOUBLE, AT(scene.spin), "A", "-0.9999 to 0.9999", "a / M", NULL},
     {"--axis", SCENE_HOLE, OPTION_VECTOR, AT(scene.axis), "X,Y,Z", NULL, "the spin's direction", NULL},
 
     {"--distance", SCENE_PLACE, OPTION_DOUBLE, AT(distance), "R", "above 0", "the camera's radius in M", NULL},

@@ -110,7 +110,7 @@ static int run(int argc, char **argv) {
         {"--size", OPTION_SIZE, s.size, "WxH", "of each eye's picture", NULL, NULL},
         {"--ods", OPTION_FLAG, &s.ods, NULL, "all round, 360 degrees; best twice as wide as high", NULL, NULL},
         {"--eyes", OPTION_DOUBLE, &s.eyes, "M", "the distance of the eyes", NULL, NULL},
-        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.999 to 0.999", NULL, NULL},
+        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.9999 to 0.9999", NULL, NULL},
         {"--distance", OPTION_DOUBLE, &s.distance, "R", "the camera's radius in M", NULL, NULL},
         {"--azimuth", OPTION_DOUBLE, &s.azimuth, "DEG", "of the camera", NULL, NULL},
         {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane", NULL, NULL},

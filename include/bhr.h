@@ -5,12 +5,12 @@
  * context, set the hole and the camera, and render into memory of your own.
  *
  * Sections, in this order, each after a line "---- title ----"
- *   version; status, messages; log; adapters; windows of the host; context; the black hole;
+ *   version; status, messages; log; adapters; windows of the host; context; the black hole; charts;
  *   the camera: an observer with a lens; cameras as matrices; accretion disk; matter with depth: volumes and hot spots;
  *   images in the host's memory; sky; film; relativistic effects, time; presets: named looks; quality;
  *   what a pixel shows; parts of a larger frame; scenes as text; rendering into memory; rendering in the background;
  *   outputs beside the picture; the host's things before the camera; rendering into windows;
- *   rays: the same tracer, asked directly; points on the screen; the matter with depth along rays;
+ *   rays: the same tracer, asked directly; points on the screen; the matter with depth along rays; bodies in free fall;
  *   numbers about the last finished frame.
  *
  * Example
@@ -392,8 +392,7 @@ typedef struct BhrHoleInfo {
 /** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_hole_info_init(BhrHoleInfo *info, size_t struct_size);
 
-/** Fills in info for the hole and the camera as they are set; where the camera's motion is not possible, its numbers
- * are NaN. */
+/** Fills in info for hole and camera as they are set; where its motion is not possible, the camera's are NaN. */
 BHR_NODISCARD BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
 
 /** Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph) of
@@ -405,6 +404,17 @@ BHR_NODISCARD BhrStatus bhr_metric_at(const BhrContext *context, const double po
  * Boyer-Lindquist (t, r, th, ph), inside horizons too.
  * Errors: INVALID_ARGUMENT at the centre, on a horizon and on the axis. */
 BHR_NODISCARD BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
+
+/* ---- charts ---- */
+
+/** How azimuths and times are told, and the triad that directions and velocities are told along. Radii and polar
+ * angles are Boyer and Lindquist's in both. RAIN is regular at both horizons for all that falls in, and needed at and
+ * inside a spinning hole's. Without spin azimuths do not differ, and the triad at and inside the horizon is that of
+ * RAIN. docs/cameras.md. @since 0.2.0 */
+typedef int32_t BhrChart;
+
+#define BHR_CHART_STATIC 0 /**< Boyer and Lindquist's ph and t, and the triad of the static observer (ZAMO). */
+#define BHR_CHART_RAIN 1   /**< Doran's, and the triad of the rain observer, who falls from rest at infinity. */
 
 /* ---- the camera: an observer with a lens ---- */
 
@@ -699,8 +709,7 @@ typedef struct BhrVolume {
     double outer_radius;
     double radius; /**< In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8. */
     double width;  /**< In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2. */
-    /** 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick
-     * one. */
+    /** 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is thick. */
     double thickness;
     double opening;    /**< JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5. Default 0.3. */
     double slope;      /**< DISK, JET: 0 .. 4. Default 0.7. */
@@ -725,8 +734,7 @@ typedef struct BhrVolume {
      * mean, G being noise of mean 0 and about variance 1. Default 1; 0 is even matter, as is that of a host whose
      * BhrVolume ends before this field. */
     double turbulence;
-    /** 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments.
-     * Default 1.8. */
+    /** 0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments. Default 1.8. */
     double clumping;
     /** 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter. Default 0.15. */
     double heating;
@@ -857,8 +865,7 @@ BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * docs/files.md says how files are read, and which bounds they have.
  * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
  * library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
- * pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken
- * for it. */
+ * pixels a side, or of more than 4 GiB of pixels in memory. Memory is taken after the file's claims are checked. */
 BHR_NODISCARD BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
 /** Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0.
@@ -953,8 +960,7 @@ typedef struct BhrFilm {
     /** Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
      * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
      * images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
-     * was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the
-     * formula. */
+     * was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md. */
     double bloom;
     /** The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
      * frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are
@@ -1014,8 +1020,7 @@ typedef int32_t BhrPreset;
 /** The look of the Event Horizon Telescope's sources: a ring blurred by a beam, in one colour map, on black. */
 #define BHR_PRESET_OBSERVATORY 2
 
-/** For lessons: a grid on the sky, and a smooth disk in the colours of its frequency shifts, without beaming and
- * delay. */
+/** For lessons: a grid on the sky, and a smooth disk in the colours of its shifts, without beaming and delay. */
 #define BHR_PRESET_TEACHING 3
 
 /** The matter that bhr_set_preset_with shows. @since 0.2.0 */
@@ -1113,8 +1118,7 @@ BHR_NODISCARD BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *q
 
 /** The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its
  * value, NaN where there is none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is
- * INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours, for a
- * legend. */
+ * INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours. */
 typedef int32_t BhrView;
 
 #define BHR_VIEW_LIGHT 0 /**< The picture. The default. */
@@ -1309,8 +1313,7 @@ typedef int32_t BhrOutputKind;
 #define BHR_OUTPUT_DEPTH 1
 
 /** RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
- * infinity). All 0 where the ray is captured, or unresolved. The disk does not hide it (see TRANSMISSION). index:
- * 0. */
+ * infinity). All 0 where the ray is captured or unresolved. The disk does not hide it (see TRANSMISSION). index: 0. */
 #define BHR_OUTPUT_SKY 2
 
 /** R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
@@ -1510,8 +1513,7 @@ BHR_NODISCARD BhrStatus bhr_trace_rays(BhrContext *context, const BhrRay *rays, 
  * capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
  * escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
  * they ran out. The curve is traced in double precision on the CPU, whatever the backend.
- * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as one from inside a spinning hole's
- * horizon is. */
+ * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon. */
 BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context, const BhrRay *ray, uint32_t capacity, double *out_points,
                                        uint32_t *out_count);
 
@@ -1600,6 +1602,41 @@ typedef struct BhrTransfer {
 BHR_NODISCARD BhrStatus bhr_transfer_rays(BhrContext *context, const BhrRay *rays, size_t ray_size, size_t count,
                                           BhrTransfer *out, size_t out_size);
 
+/* ---- bodies in free fall ---- */
+
+/** Whether and where a world line has ended. @since 0.2.0 */
+typedef int32_t BhrWorldLineEnd;
+
+#define BHR_WORLD_LINE_GOES_ON 0       /**< The line goes on. */
+#define BHR_WORLD_LINE_INNER_HORIZON 1 /**< At r- (1 + 1e-6); without spin in the centre, at r = 1e-9 M. */
+#define BHR_WORLD_LINE_HORIZON 2       /**< At r+, within 1e-6 of it: in STATIC, or backward in time. */
+
+/** A body in free fall, at an event. bhr_world_line gives all its fields. @since 0.2.0 */
+typedef struct BhrBody {
+    uint32_t struct_size; /**< sizeof(BhrBody). */
+    BhrChart chart;       /**< BHR_CHART_*; at r <= r+ (1 + 1e-6) RAIN, without spin too. */
+    double position[3];   /**< Scene axes and lengths, in that chart. */
+    double velocity[3];   /**< v / c against the chart's observer, |v| < 1; components as for a direction. */
+    double time;          /**< The chart's time, scene lengths. */
+    double proper_time;   /**< Output: scene lengths since the start: as asked for, or of the line's end. */
+    BhrWorldLineEnd end;  /**< Output: BHR_WORLD_LINE_*. */
+    uint32_t reserved;    /**< Reserved: 0. */
+} BhrBody;
+
+/** Sets struct_size and clears the rest: chart STATIC; the position has no default. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_body_init(BhrBody *body, size_t struct_size);
+
+/** Where a body in free fall is, and how it moves, after each of count proper times: scene lengths, any sign and order,
+ * within 1e12 M. body_size: sizeof(BhrBody) as the caller was compiled; out_bodies has room for count, packed, each
+ * in body's chart, and gets that size as its struct_size; body may be one of them. A line that ends before gives its
+ * end. With count 0 the call does nothing. Computed in double precision on this thread; other calls of the context
+ * wait until it returns. Errors of body, of a time and of the line clear out_bodies, others leave them alone.
+ * docs/cameras.md.
+ * Errors: INVALID_ARGUMENT for a place beyond 1e12 M; UNSUPPORTED for one that the chart does not hold, or at or
+ * inside r- (1 + 1e-6), and for lines of more than 300,000 steps. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_world_line(const BhrContext *context, const BhrBody *body, const double *proper_times,
+                                       size_t count, BhrBody *out_bodies, size_t body_size);
+
 /* ---- numbers about the last finished frame ---- */
 
 /** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
@@ -1664,6 +1701,7 @@ BHR_NODISCARD BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
     EACH(BhrRegion, bhr_region_init) \
     EACH(BhrOutput, bhr_output_init) \
     EACH(BhrProjectedPoint, bhr_projected_point_init) \
+    EACH(BhrBody, bhr_body_init) \
     EACH(BhrFrameStats, bhr_frame_stats_init)
 /** The structs of bhr_interop.h, where that is included. */
 #define BHR_INIT_MORE

@@ -232,7 +232,7 @@ export interface Volume {
      */
     width: number;
     /**
-     * 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick one.
+     * 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is thick.
      * @range 0.01 .. 1e6
      * @default 0.05
      */
@@ -320,8 +320,7 @@ export interface Volume {
      */
     turbulence: number;
     /**
-     * 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments. Default
-     * 1.8.
+     * 0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments. Default 1.8.
      * @range 0.5 .. 3
      * @default 1.8
      */
@@ -453,7 +452,7 @@ export interface Film {
      * Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
      * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit images
      * of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was made, or
-     * after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the formula.
+     * after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
      * @range 0 .. 1
      * @default 0.25
      */

@@ -138,10 +138,7 @@ export type Preset =
     | "physical"
     /** The look of the Event Horizon Telescope's sources: a ring blurred by a beam, in one colour map, on black. */
     | "observatory"
-    /**
-     * For lessons: a grid on the sky, and a smooth disk in the colours of its frequency shifts, without beaming and
-     * delay.
-     */
+    /** For lessons: a grid on the sky, and a smooth disk in the colours of its shifts, without beaming and delay. */
     | "teaching";
 
 /** The matter that bhr_set_preset_with shows. */
@@ -211,8 +208,7 @@ export type ToneMap =
 /**
  * The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its value,
  * NaN where there is none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is
- * INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours, for a
- * legend.
+ * INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours.
  */
 export type View =
     /** The picture. */

@@ -64,6 +64,14 @@ enum class WindowKind : std::int32_t {
     android = BHR_WINDOW_ANDROID,
 };
 
+/// BhrChart: How azimuths and times are told, and the triad that directions and velocities are told along.
+enum class Chart : std::int32_t {
+    /// Boyer and Lindquist's ph and t, and the triad of the static observer (ZAMO).
+    static_ = BHR_CHART_STATIC,
+    /// Doran's, and the triad of the rain observer, who falls from rest at infinity.
+    rain = BHR_CHART_RAIN,
+};
+
 /// BhrProjection: The lens.
 enum class Projection : std::int32_t {
     /// A flat picture; fov_y in (0, pi).
@@ -189,8 +197,7 @@ enum class Preset : std::int32_t {
     physical = BHR_PRESET_PHYSICAL,
     /// The look of the Event Horizon Telescope's sources: a ring blurred by a beam, in one colour map, on black.
     observatory = BHR_PRESET_OBSERVATORY,
-    /// For lessons: a grid on the sky, and a smooth disk in the colours of its frequency shifts, without beaming and
-    /// delay.
+    /// For lessons: a grid on the sky, and a smooth disk in the colours of its shifts, without beaming and delay.
     teaching = BHR_PRESET_TEACHING,
 };
 
@@ -287,6 +294,16 @@ enum class Fate : std::int32_t {
     unresolved = BHR_FATE_UNRESOLVED,
     /// The ray is not valid: not finite, direction zero, or no frame at its place.
     invalid = BHR_FATE_INVALID,
+};
+
+/// BhrWorldLineEnd: Whether and where a world line has ended.
+enum class WorldLineEnd : std::int32_t {
+    /// The line goes on.
+    goes_on = BHR_WORLD_LINE_GOES_ON,
+    /// At r- (1 + 1e-6); without spin in the centre, at r = 1e-9 M.
+    inner_horizon = BHR_WORLD_LINE_INNER_HORIZON,
+    /// At r+, within 1e-6 of it: in STATIC, or backward in time.
+    horizon = BHR_WORLD_LINE_HORIZON,
 };
 
 /// Bits of BhrAdapterInfo.flags.

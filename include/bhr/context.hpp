@@ -398,6 +398,14 @@ class Context {
             return bhr_project_points(get(), w, h, reinterpret_cast<const double *>(from.data()), from.size(), order,
                                       reinterpret_cast<BhrProjectedPoint *>(to.data()), sizeof(ProjectedPoint)); });
     }
+    /// bhr_world_line: the body in free fall after each of the proper times, in the same order.
+    Result<std::vector<Body>> world_line(const Body &body, span<const double> proper_times) const {
+        const BhrBody from = detail::as_c<BhrBody>(body);
+        return detail::ask(std::vector<Body>(proper_times.size()), [&](std::vector<Body> &to) {
+            return bhr_world_line(get(), &from, proper_times.data(), proper_times.size(),
+                                  reinterpret_cast<BhrBody *>(to.data()), sizeof(Body));
+        });
+    }
     /// bhr_trace_path: at most `capacity` points.
     Result<std::vector<PathPoint>> trace_path(const Ray &ray, std::uint32_t capacity = 4096) {
         const std::uint32_t most = capacity < 65536 ? capacity : 65536; // it never has more

@@ -168,6 +168,18 @@ struct PathPoint {
     double t = 0.0;
 };
 
+/// BhrBody: a body at rest, told in the chart STATIC, until its fields say otherwise.
+struct Body {
+    std::uint32_t struct_size = sizeof(Body);
+    Chart chart = Chart::static_;
+    Vector position = {};
+    Vector velocity = {};
+    double time = 0.0;
+    double proper_time = 0.0;
+    WorldLineEnd end = WorldLineEnd::goes_on;
+    std::uint32_t reserved = 0;
+};
+
 /* ---- adapters ---- */
 
 /// bhr_adapter_count.

@@ -135,7 +135,7 @@ struct Volume {
     /// 0 .. 1: the contrast of structure that the matter carries along: a pattern P = e^(turbulence G) over its mean, G
     /// being noise of mean 0 and about variance 1.
     double turbulence;
-    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments.
+    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments.
     double clumping;
     /// 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter.
     double heating;

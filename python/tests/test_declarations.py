@@ -26,6 +26,8 @@ ENUMS = {
     "BHR_PROJECTION_": bhr.Projection,
     "BHR_MOTION_": bhr.Motion,
     "BHR_EYE_": bhr.Eye,
+    "BHR_CHART_": bhr.Chart,
+    "BHR_WORLD_LINE_": bhr.WorldLineEnd,
     "BHR_FORMAT_": bhr.Format,
     "BHR_SKY_": bhr.SkyFlags,
     "BHR_TONE_MAP_": bhr.ToneMap,
@@ -70,6 +72,7 @@ LEFT_OUT = {
     "bhr_hot_spot_init",
     "bhr_output_init",
     "bhr_adapter_info_init",
+    "bhr_body_init",
     "bhr_frame_stats_init",
     "bhr_hole_info_init",
     "bhr_projected_point_init",
@@ -159,7 +162,7 @@ def test_every_field_is_there(struct):
 def test_every_struct_is_there():
     structs = set(re.findall(r"^typedef struct \w+ \{.*?^\} (\w+);", CODE, re.MULTILINE | re.DOTALL))
     others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrTransfer", "BhrWindow"}
-    others |= {"BhrOutput", "BhrPresetOptions"}  # arguments of methods
+    others |= {"BhrBody", "BhrOutput", "BhrPresetOptions"}  # arguments of methods
     assert structs == others | {struct.c_name for struct in STRUCTS}
 
 
@@ -203,7 +206,7 @@ def test_fields_keep_their_positions(struct):
 
 
 RAYS = [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing"), (bhr.TRANSFER, "BhrTransfer")]
-RAYS += [(bhr.PROJECTED, "BhrProjectedPoint")]
+RAYS += [(bhr.PROJECTED, "BhrProjectedPoint"), (bhr.BODY, "BhrBody")]
 
 
 @pytest.mark.parametrize(("dtype", "name"), RAYS)

@@ -164,3 +164,30 @@ def test_points_on_the_screen(ctx):
         ctx.project_points(320, 180, [[1.0, 2.0]])
     with pytest.raises(bhr.InvalidArgument):
         ctx.project_point(320, 180, (2.0, -8.0, 1.0), order=4)
+
+
+def test_bodies_in_free_fall(ctx):
+    # From rest at infinity, without spin: r^(3/2) falls evenly in proper time, which is the chart's.
+    times = np.array([[0.0, -4.0], [5.0, 1000.0]])
+    fall = ctx.world_line((0.0, 0.0, 12.0), (0.0, 0.0, 0.0), times, chart="rain", time=3.0)
+    assert fall.shape == (2, 2) and fall.dtype == bhr.BODY
+    assert np.all(fall["end"][times < 100.0] == bhr.WorldLineEnd.GOES_ON)
+    assert fall["end"][1, 1] == bhr.WorldLineEnd.INNER_HORIZON and 0.0 < fall["proper_time"][1, 1] < 20.0
+    before = times < 100.0
+    radius = (12.0**1.5 - 1.5 * math.sqrt(2.0) * times[before]) ** (2.0 / 3.0)
+    assert np.allclose(fall["position"][before], radius[:, np.newaxis] * (0.0, 0.0, 1.0), rtol=1e-10, atol=1e-10)
+    assert np.allclose(fall["time"][before], 3.0 + times[before], rtol=1e-10)
+    assert np.array_equal(fall["proper_time"][before], times[before])
+    # Round a spinning hole and back, from where the line has come to.
+    ctx.spin = 0.9
+    there = ctx.world_line((10.0, 0.0, 0.0), (0.0, 0.3, 0.1), 80.0)
+    assert there.shape == () and there["chart"] == bhr.Chart.STATIC
+    back = ctx.world_line(there["position"], there["velocity"], [-80.0], time=there["time"])[0]
+    assert np.allclose(back["position"], (10.0, 0.0, 0.0), atol=1e-9) and abs(back["time"]) < 1e-8
+    assert ctx.world_line((10.0, 0.0, 0.0), (0.0, 0.0, 0.0), []).shape == (0,)
+    with pytest.raises(bhr.InvalidArgument, match="velocity"):
+        ctx.world_line((10.0, 0.0, 0.0), (0.0, 1.0, 0.0), [1.0])
+    with pytest.raises(bhr.InvalidArgument, match=r"proper_times\[1\]"):
+        ctx.world_line((10.0, 0.0, 0.0), (0.0, 0.0, 0.0), [1.0, math.nan])
+    with pytest.raises(ValueError, match="position"):
+        ctx.world_line((10.0, 0.0), (0.0, 0.0, 0.0), [1.0])

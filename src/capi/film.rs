@@ -43,8 +43,7 @@ pub struct BhrFilm {
     /// Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
     /// at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
     /// images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
-    /// was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the
-    /// formula.
+    /// was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
     pub bloom: f64,
     /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
     /// frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are

@@ -22,7 +22,7 @@ pub unsafe extern "C" fn bhr_set_mass(context: *mut BhrContext, mass: f64) -> Bh
     }
 }
 
-/// Sets the spin a / M, -0.999 .. 0.999; below 0 the hole turns towards -ph. Default 0.
+/// Sets the spin a / M, -0.9999 .. 0.9999; below 0 the hole turns towards -ph. Default 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_spin(context: *mut BhrContext, spin: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -155,8 +155,7 @@ pub unsafe extern "C" fn bhr_hole_info_init(info: *mut BhrHoleInfo, struct_size:
     anywhere("bhr_hole_info_init", || unsafe { versioned::init(info, "info", struct_size) })
 }
 
-/// Fills in info for the hole and the camera as they are set; where the camera's motion is not possible, its numbers
-/// are NaN.
+/// Fills in info for hole and camera as they are set; where its motion is not possible, the camera's are NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut BhrHoleInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

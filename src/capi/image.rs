@@ -221,8 +221,7 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 /// docs/files.md says how files are read, and which bounds they have.
 /// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, or in a
 /// library that was built without EXR; IO for a file that is not there, not readable, broken, of more than 2^20
-/// pixels a side, or of more than 4 GiB of pixels in memory. What a file claims is checked before memory is taken
-/// for it.
+/// pixels a side, or of more than 4 GiB of pixels in memory. Memory is taken after the file's claims are checked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -59,6 +59,7 @@ pub mod scene_file;
 pub mod scene;
 pub mod interop_target;
 pub mod matrix;
+pub mod body;
 pub mod project;
 pub mod stats;
 pub mod transfer;

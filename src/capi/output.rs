@@ -39,8 +39,7 @@ pub const BHR_OUTPUT_LIGHT: BhrOutputKind = 0;
 /// none. A linear depth is this times the cosine of the angle to the forward axis. index: 0.
 pub const BHR_OUTPUT_DEPTH: BhrOutputKind = 1;
 /// RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
-/// infinity). All 0 where the ray is captured, or unresolved. The disk does not hide it (see TRANSMISSION). index:
-/// 0.
+/// infinity). All 0 where the ray is captured or unresolved. The disk does not hide it (see TRANSMISSION). index: 0.
 pub const BHR_OUTPUT_SKY: BhrOutputKind = 2;
 /// R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
 /// captured. The alpha of a TRANSPARENT picture is 1 less the mean of this over a pixel. index: 0.

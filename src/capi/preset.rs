@@ -22,8 +22,7 @@ pub const BHR_PRESET_CINEMATIC: BhrPreset = 0;
 pub const BHR_PRESET_PHYSICAL: BhrPreset = 1;
 /// The look of the Event Horizon Telescope's sources: a ring blurred by a beam, in one colour map, on black.
 pub const BHR_PRESET_OBSERVATORY: BhrPreset = 2;
-/// For lessons: a grid on the sky, and a smooth disk in the colours of its frequency shifts, without beaming and
-/// delay.
+/// For lessons: a grid on the sky, and a smooth disk in the colours of its shifts, without beaming and delay.
 pub const BHR_PRESET_TEACHING: BhrPreset = 3;
 
 /// The matter that bhr_set_preset_with shows. @since 0.2.0

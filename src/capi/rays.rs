@@ -259,6 +259,13 @@ impl Array {
     }
 
     /// # Safety
+    /// `index` is less than the count, and elements are doubles or longer.
+    pub(super) unsafe fn read_double(self, index: usize) -> f64 {
+        // SAFETY: this function's contract.
+        unsafe { self.at(index).cast::<f64>().read_unaligned() }
+    }
+
+    /// # Safety
     /// `index` is less than the count.
     pub(super) unsafe fn at(self, index: usize) -> *mut u8 {
         // SAFETY: this function's contract.
@@ -354,8 +361,7 @@ pub unsafe extern "C" fn bhr_trace_rays(
 /// capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
 /// escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
 /// they ran out. The curve is traced in double precision on the CPU, whatever the backend.
-/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as one from inside a spinning hole's
-/// horizon is.
+/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

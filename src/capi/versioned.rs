@@ -336,6 +336,7 @@ mod tests {
     #[test]
     fn every_struct_may_grow_under_hosts_of_the_first_release() {
         hosts_of_the_first_release_go_on::<crate::capi::adapter::BhrAdapterInfo>();
+        hosts_of_the_first_release_go_on::<crate::capi::body::BhrBody>();
         hosts_of_the_first_release_go_on::<crate::capi::camera::BhrCamera>();
         hosts_of_the_first_release_go_on::<crate::capi::context::BhrContextOptions>();
         hosts_of_the_first_release_go_on::<crate::capi::disk::BhrDisk>();

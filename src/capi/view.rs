@@ -10,8 +10,7 @@ use crate::scene::View;
 
 /// The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its
 /// value, NaN where there is none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is
-/// INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours, for a
-/// legend.
+/// INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED. docs/views.md has the colours.
 pub type BhrView = i32;
 /// The picture. The default.
 pub const BHR_VIEW_LIGHT: BhrView = 0;

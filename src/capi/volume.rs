@@ -71,8 +71,7 @@ pub struct BhrVolume {
     pub radius: f64,
     /// In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2.
     pub width: f64,
-    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick
-    /// one.
+    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is thick.
     pub thickness: f64,
     /// JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5. Default 0.3.
     pub opening: f64,
@@ -104,8 +103,7 @@ pub struct BhrVolume {
     /// mean, G being noise of mean 0 and about variance 1. Default 1; 0 is even matter, as is that of a host whose
     /// BhrVolume ends before this field.
     pub turbulence: f64,
-    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments.
-    /// Default 1.8.
+    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments. Default 1.8.
     pub clumping: f64,
     /// 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter. Default 0.15.
     pub heating: f64,

@@ -100,7 +100,7 @@ mod tests {
 
     /// The table of docs/numerics.md: a, r_max, f_max, checked against the defining integral to 2e-28.
     #[test]
-    fn maximum_for_six_spins() {
+    fn maximum_for_seven_spins() {
         let table = [
             (-0.9, 14.08021828, 3.490434547e-5),
             (0.0, 9.55092808, 1.145894732e-4),
@@ -108,6 +108,7 @@ mod tests {
             (0.9, 3.441843362, 2.841915083e-3),
             (0.998, 1.581184581, 4.005816024e-2),
             (0.999, 1.47443429, 5.161236615e-2),
+            (0.9999, 1.255567719, 9.352581436e-2),
         ];
         for (a, r, f) in table {
             let (r_max, f_max) = page_thorne_maximum(a);
@@ -118,7 +119,7 @@ mod tests {
 
     #[test]
     fn profile_interpolates_the_formula() {
-        for a in [-0.998, 0.0, 0.9, 0.998] {
+        for a in [-0.998, 0.0, 0.9, 0.998, 0.9999] {
             let profile = TemperatureProfile::new(a);
             let f_max = page_thorne_maximum(a).1;
             for i in 1..400 {

@@ -72,6 +72,22 @@ pub struct Event {
 /// Errors: INVALID_ARGUMENT for a spin, a place, a velocity or a time out of range; UNSUPPORTED for a place that the
 /// chart does not hold, and for a line that takes more than `MOST_STEPS` steps; OUT_OF_MEMORY.
 pub fn world_line(a: f64, body: &Body, axes: &[DVec3; 3], proper_times: &[f64]) -> Result<Vec<Event>> {
+    let nothing = Event { body: *body, axes: *axes, proper_time: 0.0, end: None };
+    let mut events = collected(proper_times.iter().map(|_| nothing), "the events of a world line")?;
+    each_event(a, body, axes, proper_times, &mut |index, event| events[index] = event)?;
+    Ok(events)
+}
+
+/// `world_line` for those who keep events in memory of their own: gives `found` each event and the index of its proper
+/// time, in the order in which a body that goes into the future, and then one that goes into the past, comes there.
+/// Errors: as `world_line`, some of them when part of the events have been given.
+pub fn each_event(
+    a: f64,
+    body: &Body,
+    axes: &[DVec3; 3],
+    proper_times: &[f64],
+    found: &mut dyn FnMut(usize, Event),
+) -> Result<()> {
     let (line, start) = Line::new(a, body, axes)?;
     if let Some(time) = proper_times.iter().find(|time| time.is_nan() || time.abs() > LONGEST) {
         let time = Number(*time);
@@ -79,8 +95,6 @@ pub fn world_line(a: f64, body: &Body, axes: &[DVec3; 3], proper_times: &[f64]) 
             "a proper time is {time} M; it must lie in [-{LONGEST:e}, {LONGEST:e}] M"
         )));
     }
-    let nothing = Event { body: *body, axes: *axes, proper_time: 0.0, end: None };
-    let mut events = collected(proper_times.iter().map(|_| nothing), "the events of a world line")?;
     let mut order: Vec<usize> = with_room(proper_times.len(), "the order of proper times")?;
     let mut steps = MOST_STEPS;
     for past in [false, true] {
@@ -89,11 +103,11 @@ pub fn world_line(a: f64, body: &Body, axes: &[DVec3; 3], proper_times: &[f64]) 
         order.sort_unstable_by(|i, j| proper_times[*i].abs().total_cmp(&proper_times[*j].abs()));
         let mut course = Course { line: &line, past, from: start, to: start, h: 0.0, end: None, steps };
         for i in &order {
-            events[*i] = course.event(proper_times[*i])?;
+            found(*i, course.event(proper_times[*i])?);
         }
         steps = course.steps;
     }
-    Ok(events)
+    Ok(())
 }
 
 /// A point of a world line. `State::delay` is the rain time from there to the start.

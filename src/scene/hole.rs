@@ -5,13 +5,13 @@ use crate::error::{Error, Number, Result, out_of_range};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Largest |a / M| the tracers accept.
-pub const MAX_SPIN: f64 = 0.999;
+pub const MAX_SPIN: f64 = 0.9999;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
     /// M in scene lengths, > 0. Default 1.
     pub mass: f64,
-    /// a / M in [-0.999, 0.999]; < 0: the hole turns towards -phi. Default 0.
+    /// a / M in [-0.9999, 0.9999]; < 0: the hole turns towards -phi. Default 0.
     pub spin: f64,
     /// Spin axis and disk normal, scene axes, unit. Default +z.
     pub axis: DVec3,
@@ -32,7 +32,7 @@ impl Hole {
         Err(Error::argument(format!("mass is {}; it must be finite and greater than 0 (scene lengths)", Number(mass))))
     }
 
-    /// Errors: `spin` not finite or |spin| > 0.999.
+    /// Errors: `spin` not finite or |spin| > 0.9999.
     pub fn check_spin(spin: f64) -> Result<f64> {
         if spin.abs() <= MAX_SPIN {
             return Ok(spin);

@@ -26,8 +26,8 @@ static void spin(Watch *watch, BhrContext *context) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spin", bhr_set_spin(context, bad[i]));
     }
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_spin(NULL, 0.0));
-    CHECK_OK(bhr_set_spin(context, -0.999));
-    CHECK_OK(bhr_set_spin(context, 0.999));
+    CHECK_OK(bhr_set_spin(context, -0.9999));
+    CHECK_OK(bhr_set_spin(context, 0.9999));
     CHECK_OK(bhr_set_spin(context, watch->spin));
 }
 

@@ -78,6 +78,7 @@ int  check_unchanged(const Watch *watch, const char *file, int line, const char 
 /* ---- sizes of structs in the library's first release (with pointers of 8 bytes): hosts compiled then go on saying
  * them, however the structs have grown ---- */
 enum {
+    FIRST_BODY = 80,
     FIRST_CAMERA = 120,
     FIRST_CONTEXT_OPTIONS = 48,
     FIRST_DISK = 64,

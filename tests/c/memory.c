@@ -34,6 +34,7 @@ static unsigned char pixels[JOBS][WIDE * HIGH * 16];
 static BhrRay        rays[RAYS];
 static BhrHit        hits[RAYS];
 static double        path[4 * 65536];
+static BhrBody       bodies[RAYS];
 
 /* Whether the sky has its Milky Way, which takes half a second: everyday where the limit is set in a new context. */
 static int has_milky_way = 1;
@@ -164,6 +165,18 @@ static void trace(BhrContext *context) {
     }
 }
 
+static void follow(BhrContext *context) {
+    BhrBody body;
+    if (TOOK(bhr_body_init(&body, sizeof body))) {
+        body.position[0] = 12.0;
+        body.velocity[1] = 0.3;
+        for (uint32_t i = 0; i < ray_count; i++) {
+            path[i] = 0.01 * i;
+        }
+        TOOK(bhr_world_line(context, &body, path, ray_count, bodies, sizeof bodies[0]));
+    }
+}
+
 /* Makes all calls that take memory. Frames of wide x high are looked up in tables. */
 static void use(BhrContext *context) {
     BhrFilm film;
@@ -172,6 +185,7 @@ static void use(BhrContext *context) {
     jobs(context);
     outputs(context);
     trace(context);
+    follow(context);
     if (TOOK(bhr_film_init(&film, sizeof film))) {
         film.bloom = 0.5;
         TOOK(bhr_set_film(context, &film));

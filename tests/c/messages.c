@@ -43,7 +43,7 @@ static void each_context_has_its_own(BhrBackend backend) {
         pthread_join(thread, NULL);
     }
     CHECK(strstr(of_context(one), "bhr_set_mass: mass is -1;") != NULL, "%s", of_context(one));
-    CHECK(strcmp(of_context(other), "bhr_set_spin: spin is 2; it must lie in [-0.999, 0.999]") == 0, "%s",
+    CHECK(strcmp(of_context(other), "bhr_set_spin: spin is 2; it must lie in [-0.9999, 0.9999]") == 0, "%s",
           of_context(other));
     /* This thread has not heard of the other one's failure. */
     CHECK(strstr(bhr_error_message(), "mass") != NULL, "%s", bhr_error_message());

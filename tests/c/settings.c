@@ -93,6 +93,7 @@ static void structs(void) {
     BhrFrameStats     stats;
     BhrProjectedPoint points[2];
     CHECK_INIT(BhrAdapterInfo, bhr_adapter_info_init);
+    CHECK_INIT(BhrBody, bhr_body_init);
     CHECK_INIT(BhrFrameStats, bhr_frame_stats_init);
     CHECK_INIT(BhrHoleInfo, bhr_hole_info_init);
     CHECK_INIT(BhrProjectedPoint, bhr_projected_point_init);

@@ -327,6 +327,17 @@ static void rays() {
     const std::vector<bhr::PathPoint> path = context.trace_path(inward, 100).value();
     EXPECT(path.size() >= 2 && path.size() <= 100 && near(path[0].z, 30.0));
     EXPECT(path.back().z < 2.1 && path.back().t < 0.0);
+    bhr::Body faller;
+    faller.position = {0.0, 12.0, 0.0};
+    faller.chart = bhr::Chart::rain;
+    const double times[3] = {0.0, 5.0, 1000.0};
+    const std::vector<bhr::Body> fall = context.world_line(faller, times).value();
+    EXPECT(fall.size() == 3 && near(fall[0].position[1], 12.0) && near(fall[1].time, 5.0));
+    EXPECT(fall[1].proper_time == 5.0 && fall[1].end == bhr::WorldLineEnd::goes_on);
+    EXPECT(near(std::pow(fall[1].position[1], 1.5), std::pow(12.0, 1.5) - 7.5 * std::sqrt(2.0)));
+    EXPECT(fall[2].end == bhr::WorldLineEnd::inner_horizon && fall[2].proper_time < 20.0);
+    faller.velocity = {0.0, 1.0, 0.0};
+    EXPECT(!context.world_line(faller, times) && context.world_line(faller, {}).value().empty());
     EXPECT(!context.trace_path(inward, 1) && !context.camera_ray(8, 4, NAN, 0.0) && !context.camera_rays(0, 4));
 }
 

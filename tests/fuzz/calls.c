@@ -343,7 +343,24 @@ static void ray_call(BhrContext *context) {
         }
         rays[i].frequency_ratio = number();
     }
-    switch (byte() % 6) {
+    switch (byte() % 7) {
+    case 6: {
+        double  times[4];
+        BhrBody body, bodies[4];
+        bhr_body_init(&body, sizeof body);
+        body.struct_size = mostly(sizeof body, byte() % (uint32_t)sizeof body);
+        body.chart = constant(BHR_CHART_RAIN);
+        memcpy(body.position, rays[0].position, sizeof body.position);
+        for (size_t k = 0; k < 3; k++) {
+            body.velocity[k] = mostly(1, 0) != 0 ? (double)byte() / 300.0 - 0.4 : number();
+        }
+        body.time = number();
+        for (size_t i = 0; i < 4; i++) {
+            times[i] = byte() < 250 ? (double)byte() - 128.0 : number();
+        }
+        check(bhr_world_line(context, &body, times, byte() % 5, bodies, element_size(sizeof bodies[0])));
+        break;
+    }
     case 5: {
         BhrProjectedPoint image;
         image.struct_size = mostly(sizeof image, 3);

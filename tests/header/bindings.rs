@@ -15,7 +15,7 @@ const BY_HAND_IN_CPP: [&str; 1] = ["BhrStatus"];
 const NOT_IN_PYTHON: [&str; 3] = ["BhrLogLevel", "BhrWindowKind", "BhrPresentMode"];
 const BITS_NOT_IN_PYTHON: [&str; 2] = ["ContextFlags", "ImageFlags"];
 /// Enumerations that are told and never given: their members go by no names.
-const ONLY_TOLD: [&str; 2] = ["Status", "Fate"];
+const ONLY_TOLD: [&str; 3] = ["Status", "Fate", "WorldLineEnd"];
 
 /// The structs that a C++ program fills in, with the defaults of their *_init functions; of the camera the fields,
 /// which camera.hpp gives methods.

@@ -10,8 +10,18 @@ use std::fmt::Write;
 const STRUCTS: [&str; 6] = ["BhrDisk", "BhrVolume", "BhrHotSpot", "BhrSky", "BhrFilm", "BhrQuality"];
 
 /// Enumerations of which no program chooses a constant by its name.
-const UNCHOSEN: [&str; 7] =
-    ["BhrStatus", "BhrLogLevel", "BhrWindowKind", "BhrFormat", "BhrPresentMode", "BhrOutputKind", "BhrFate"];
+const UNCHOSEN: [&str; 10] = [
+    "BhrStatus",
+    "BhrLogLevel",
+    "BhrWindowKind",
+    "BhrFormat",
+    "BhrPresentMode",
+    "BhrOutputKind",
+    "BhrFate",
+    "BhrChart",
+    "BhrTransport",
+    "BhrWorldLineEnd",
+];
 
 /// Lists that are not named after their enumerations.
 const LISTS: [(&str, &str); 1] = [("BhrVolumeShape", "VOLUME_KINDS")];

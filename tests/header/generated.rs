@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 29] = [
+const SECTIONS: [(&str, &str); 31] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -16,6 +16,7 @@ const SECTIONS: [(&str, &str); 29] = [
     ("window", "windows of the host"),
     ("context", "context"),
     ("hole", "the black hole"),
+    ("chart", "charts"),
     ("camera", "the camera: an observer with a lens"),
     ("matrix", "cameras as matrices"),
     ("disk", "accretion disk"),
@@ -37,6 +38,7 @@ const SECTIONS: [(&str, &str); 29] = [
     ("rays", "rays: the same tracer, asked directly"),
     ("project", "points on the screen"),
     ("transfer", "the matter with depth along rays"),
+    ("body", "bodies in free fall"),
     ("stats", "numbers about the last finished frame"),
 ];
 

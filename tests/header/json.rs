@@ -26,8 +26,8 @@ pub fn committed() -> Value {
 }
 
 /// Structs that calls fill, and those that the host has to: their *_init functions clear them, and give no defaults.
-const CLEARED: [&str; 6] =
-    ["BhrAdapterInfo", "BhrFrameStats", "BhrHoleInfo", "BhrProjectedPoint", "BhrRegion", "BhrWindow"];
+const CLEARED: [&str; 7] =
+    ["BhrAdapterInfo", "BhrBody", "BhrFrameStats", "BhrHoleInfo", "BhrProjectedPoint", "BhrRegion", "BhrWindow"];
 
 /// The values that the *_init functions fill in, by "Struct.field": the library's own word for the defaults. Adding 0
 /// turns -0 into 0.

@@ -137,6 +137,7 @@ fn layouts_hold_in_rust() {
         volume::BhrHotSpot {
             struct_size, flags, radius, size, azimuth, absorption, temperature, spectral_index, tint, brightness
         }
+        body::BhrBody { struct_size, chart, position, velocity, time, proper_time, end, reserved }
         transfer::BhrTransfer { fate, reserved, intensity, optical_depth, light }
         image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved }
         sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }

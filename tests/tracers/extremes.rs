@@ -14,7 +14,7 @@ fn both() -> [Lent; 2] {
     crate::frames::both().map(|(_, renderer)| renderer)
 }
 
-const SPINS: [f64; 7] = [0.0, 1e-9, 0.5, 0.998, 0.999, -0.999, -1e-3];
+const SPINS: [f64; 7] = [0.0, 1e-9, 0.5, 0.998, 0.9999, -0.9999, -1e-3];
 const PROJECTIONS: [Projection; 5] =
     [Projection::Perspective, Projection::Perspective, Projection::Fisheye, Projection::Equirect, Projection::Cube];
 const MASSES: [f64; 5] = [1.0, 1e-12, 1e12, 1e-100, 1e100];

@@ -17,6 +17,7 @@ from . import interop
 from ._constants import (
     AdapterFlags,
     Backend,
+    Chart,
     ColourMap,
     DiskFlags,
     DiskReference,
@@ -41,6 +42,7 @@ from ._constants import (
     VolumeFlags,
     VolumeResolution,
     VolumeShape,
+    WorldLineEnd,
 )
 from ._context import Context
 from ._ffi import ffi as _ffi
@@ -48,7 +50,7 @@ from ._film import light_curve, render_film
 from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
-from ._rays import CROSSING, HIT, PROJECTED, RAY, TRANSFER, rays
+from ._rays import BODY, CROSSING, HIT, PROJECTED, RAY, TRANSFER, rays
 from ._scene_text import Pictures
 from ._structs import (
     AdapterInfo,
@@ -72,10 +74,12 @@ __version__: str = _ffi.string(_lib.bhr_version_string()).decode()
 __all__ = [
     "AdapterFlags",
     "AdapterInfo",
+    "BODY",
     "Backend",
     "CROSSING",
     "Camera",
     "Cancelled",
+    "Chart",
     "ColourMap",
     "Context",
     "DeviceLost",
@@ -123,6 +127,7 @@ __all__ = [
     "VolumeFlags",
     "VolumeResolution",
     "VolumeShape",
+    "WorldLineEnd",
     "adapters",
     "interop",
     "light_curve",

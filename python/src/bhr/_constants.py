@@ -58,6 +58,15 @@ class Backend(enum.IntEnum):
     GL = 5
 
 
+class Chart(enum.IntEnum):
+    """How azimuths and times are told, and the triad that directions and velocities are told along."""
+
+    #: Boyer and Lindquist's ph and t, and the triad of the static observer (ZAMO).
+    STATIC = 0
+    #: Doran's, and the triad of the rain observer, who falls from rest at infinity.
+    RAIN = 1
+
+
 class Projection(enum.IntEnum):
     """The lens."""
 
@@ -193,8 +202,7 @@ class Preset(enum.IntEnum):
     PHYSICAL = 1
     #: The look of the Event Horizon Telescope's sources: a ring blurred by a beam, in one colour map, on black.
     OBSERVATORY = 2
-    #: For lessons: a grid on the sky, and a smooth disk in the colours of its frequency shifts, without beaming and
-    #: delay.
+    #: For lessons: a grid on the sky, and a smooth disk in the colours of its shifts, without beaming and delay.
     TEACHING = 3
 
 
@@ -289,6 +297,17 @@ class Fate(enum.IntEnum):
     INVALID = 3
 
 
+class WorldLineEnd(enum.IntEnum):
+    """Whether and where a world line has ended."""
+
+    #: The line goes on.
+    GOES_ON = 0
+    #: At r- (1 + 1e-6); without spin in the centre, at r = 1e-9 M.
+    INNER_HORIZON = 1
+    #: At r+, within 1e-6 of it: in STATIC, or backward in time.
+    HORIZON = 2
+
+
 class AdapterFlags(enum.IntFlag):
     """Bits of BhrAdapterInfo.flags in bhr.h."""
 
@@ -376,6 +395,8 @@ class Effects(enum.IntFlag):
 
 BackendName = Literal["auto", "cpu", "vulkan", "metal", "d3d12", "gl"]
 BackendLike = Union[Backend, BackendName]
+ChartName = Literal["static", "rain"]
+ChartLike = Union[Chart, ChartName]
 ProjectionName = Literal["perspective", "fisheye", "equirect", "cube", "frustum"]
 ProjectionLike = Union[Projection, ProjectionName]
 MotionName = Literal["static", "free_fall", "orbit", "velocity"]
@@ -412,6 +433,7 @@ OutputKindLike = Union[OutputKind, OutputKindName]
 #: The types of the names of each enumeration; names of flags are any text, as several may be joined.
 NAMES: dict[type[enum.IntEnum], Any] = {
     Backend: BackendName,
+    Chart: ChartName,
     Projection: ProjectionName,
     Motion: MotionName,
     Eye: EyeName,

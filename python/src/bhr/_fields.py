@@ -150,7 +150,7 @@ class Volume(Struct):
     radius: float = 8.0
     #: In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2.
     width: float = 2.0
-    #: 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick one.
+    #: 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is thick.
     thickness: float = 0.05
     #: JET: the wall's angle from the axis at `radius`, radians, 0.01 .. 1.5. Default 0.3.
     opening: float = 0.3
@@ -182,8 +182,7 @@ class Volume(Struct):
     #: being noise of mean 0 and about variance 1. Default 1; 0 is even matter, as is that of a host whose BhrVolume
     #: ends before this field.
     turbulence: float = 1.0
-    #: 0.5 .. 3: the density is multiplied by P^clumping over its mean; more draws the matter into filaments. Default
-    #: 1.8.
+    #: 0.5 .. 3: the density is multiplied by P^clumping over its mean; more makes filaments. Default 1.8.
     clumping: float = 1.8
     #: 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter. Default 0.15.
     heating: float = 0.15
@@ -257,7 +256,7 @@ class Film(Struct):
     #: Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
     #: at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit images
     #: of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was made, or
-    #: after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md has the formula.
+    #: after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
     bloom: float = 0.25
     #: The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
     #: heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are INVALID_STATE

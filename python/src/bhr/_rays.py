@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Rays and their ends as structured arrays with the layout of BhrRay and BhrHit, which the library reads and writes in
-place."""
+"""Rays, their ends and bodies as structured arrays with the layouts of BhrRay, BhrHit and BhrBody, which the library
+reads and writes in place."""
 
 from __future__ import annotations
 
@@ -35,6 +35,10 @@ HIT: np.dtype[Any] = dtype_of(ffi.typeof("BhrHit"))
 
 #: The matter with depth along a ray: `fate`, `intensity`, `optical_depth` (NaN unless escaped) and `light`.
 TRANSFER: np.dtype[Any] = dtype_of(ffi.typeof("BhrTransfer"))
+
+#: A body in free fall: `position`, `velocity` and `time` in a `chart` (a Chart), `proper_time` since the start of its
+#: world line, and whether that has come to an `end` (a WorldLineEnd).
+BODY: np.dtype[Any] = dtype_of(ffi.typeof("BhrBody"))
 
 #: The image of a point: the fields of ProjectedPoint.
 PROJECTED: np.dtype[Any] = dtype_of(ffi.typeof("BhrProjectedPoint"))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The part of a context that follows single rays: those of a picture, of arrays, and to points. Knows no frames."""
+"""The part of a context that follows single rays, those of a picture, of arrays, and to points, and bodies in free
+fall. Knows no frames."""
 
 from __future__ import annotations
 
@@ -8,16 +9,18 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._constants import Chart, ChartLike
 from ._ffi import ffi
 from ._gate import Gate
 from ._library import check, lib
-from ._rays import HIT, PROJECTED, RAY, TRANSFER
+from ._names import member
+from ._rays import BODY, HIT, PROJECTED, RAY, TRANSFER
 from ._struct import VectorLike, doubles, new
 from ._structs import ProjectedPoint
 
 
 class Tracing:
-    """The methods of Context for rays."""
+    """The methods of Context for rays and bodies."""
 
     __slots__ = ("_gate",)
 
@@ -99,6 +102,29 @@ class Tracing:
                 )
             )
         return points[: count[0]].copy()
+
+    def world_line(
+        self,
+        position: VectorLike,
+        velocity: VectorLike,
+        proper_times: npt.ArrayLike,
+        *,
+        chart: ChartLike = Chart.STATIC,
+        time: float = 0.0,
+    ) -> npt.NDArray[np.void]:
+        """Where a body in free fall is after each of the proper times, of any sign, order and shape: dtype BODY, of
+        that shape. `velocity`, in units of c, is what the observer of the chart's triad measures. A line that ends
+        before a time gives its end, which `end` and `proper_time` tell."""
+        body = new("BhrBody")
+        body.chart = member(Chart, chart, "chart")
+        body.position, body.velocity = doubles(position, 3, "position"), doubles(velocity, 3, "velocity")
+        body.time = time
+        times = np.asarray(proper_times, np.float64, order="C")
+        found = np.zeros(times.shape, BODY)
+        with self._gate as context:
+            begin, out = _pointer("double *", times), _pointer("BhrBody *", found)
+            check(lib.bhr_world_line(context, body, begin, times.size, out, BODY.itemsize))
+        return found
 
 
 def _pointer(kind: str, array: npt.NDArray[Any]) -> Any:

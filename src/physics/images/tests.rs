@@ -113,7 +113,7 @@ fn count(all: usize) -> usize {
     if runs_all() { all } else { all / 25 }
 }
 
-const SPINS: [f64; 4] = [0.5, 0.9, -0.998, 0.999];
+const SPINS: [f64; 4] = [0.5, 0.9, -0.998, 0.9999];
 
 #[test]
 fn rays_of_images_pass_their_points_without_spin() {

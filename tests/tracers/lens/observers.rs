@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 /// without spin.
 pub fn random_observer(random: &mut Random, index: usize) -> Scene {
     let mut scene = Scene::plain();
-    let any_spin = random.range(-0.998, 0.998);
-    let end = random.pick(&[-0.998, 0.998]);
+    let any_spin = random.range(-0.9999, 0.9999);
+    let end = random.pick(&[-0.9999, 0.9999]);
     scene.hole.spin = if index.is_multiple_of(3) { 0.0 } else { random.pick(&[any_spin, any_spin, any_spin, end]) };
     let spin = scene.hole.spin;
     let motion = match index / 3 % 3 {

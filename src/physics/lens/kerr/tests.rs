@@ -247,7 +247,7 @@ fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &KerrLookup, m: 
     }
 }
 
-const SPINS: [f64; 8] = [0.1, -0.5, 0.9, -0.9, 0.95, 0.998, -0.998, 0.3];
+const SPINS: [f64; 8] = [0.1, -0.5, 0.9, -0.9, 0.95, 0.998, -0.9999, 0.9999];
 
 /// Observer number `i`: spins in turn, r log-uniform, theta over the sphere, every fifth in the plane or on the axis or
 /// near.
