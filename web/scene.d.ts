@@ -3,6 +3,7 @@
 // Made by tests/header/typescript.rs from include/bhr.json; do not edit.
 
 import type {
+    Chart,
     ColourMap,
     DiskFlag,
     DiskReference,
@@ -15,6 +16,7 @@ import type {
     Projection,
     SkyFlag,
     ToneMap,
+    Transport,
     VolumeFlag,
     VolumeResolution,
     VolumeShape,
@@ -58,8 +60,8 @@ export interface Camera {
      */
     motion: Motion;
     /**
-     * For "velocity": v / c against the local static observer (ZAMO), |v| < 1; components as for a direction given at
-     * position. Default 0.
+     * For "velocity": v / c against the observer of the chart's triad (by default the local static one, the ZAMO), |v|
+     * < 1; components as for a direction given at position. Default 0.
      * @default [0, 0, 0]
      */
     velocity: Vector;
@@ -106,6 +108,18 @@ export interface Camera {
      * @default "middle"
      */
     eye: Eye;
+    /**
+     * One of Chart: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths and
+     * points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that is to
+     * go there is told in it from its begin. Default STATIC.
+     * @default "static"
+     */
+    chart: Chart;
+    /**
+     * One of Transport. Default TRIAD.
+     * @default "triad"
+     */
+    transport: Transport;
 }
 
 /**

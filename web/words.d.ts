@@ -21,6 +21,18 @@ export type Backend =
     /** OpenGL or OpenGL ES, by EGL or WGL. */
     | "gl";
 
+/**
+ * How azimuths and times are told, and the triad that directions and velocities are told along. Radii and polar angles
+ * are Boyer and Lindquist's in both. RAIN is regular at both horizons for all that falls in, and needed at and inside a
+ * spinning hole's. Without spin azimuths do not differ, and the triad at and inside the horizon is that of RAIN.
+ * docs/cameras.md.
+ */
+export type Chart =
+    /** Boyer and Lindquist's ph and t, and the triad of the static observer (ZAMO). */
+    | "static"
+    /** Doran's, and the triad of the rain observer, who falls from rest at infinity. */
+    | "rain";
+
 /** The colours of a picture. */
 export type ColourMap =
     /** The picture has the colours of the light. */
@@ -114,9 +126,9 @@ export type Method =
  * rays are asked for.
  */
 export type Motion =
-    /** At rest; with spin, the zero angular momentum observer (ZAMO). */
+    /** At rest, outside the horizon; with spin, the zero angular momentum observer (ZAMO). */
     | "static"
-    /** Falls radially from rest at infinity, inside a spin-0 horizon too. */
+    /** Falls from rest at infinity with E = 1 and L = Q = 0, inside the horizon too (with spin in chart RAIN). */
     | "free_fall"
     /**
      * On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
@@ -204,6 +216,13 @@ export type ToneMap =
      * AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES.
      */
     | "agx";
+
+/** How bhr_camera_advance carries a camera's axes along. */
+export type Transport =
+    /** Forward and up keep their angles to e_r, e_th and e_ph. */
+    | "triad"
+    /** Forward and up stay parallel to themselves along the world line, as the axes of gyroscopes do. */
+    | "parallel";
 
 /**
  * The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its value,

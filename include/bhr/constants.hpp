@@ -91,9 +91,9 @@ enum class Projection : std::int32_t {
 
 /// BhrMotion: How the camera's observer moves.
 enum class Motion : std::int32_t {
-    /// At rest; with spin, the zero angular momentum observer (ZAMO).
+    /// At rest, outside the horizon; with spin, the zero angular momentum observer (ZAMO).
     static_ = BHR_MOTION_STATIC,
-    /// Falls radially from rest at infinity, inside a spin-0 horizon too.
+    /// Falls from rest at infinity with E = 1 and L = Q = 0, inside the horizon too (with spin in chart RAIN).
     free_fall = BHR_MOTION_FREE_FALL,
     /// On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
     /// the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
@@ -110,6 +110,14 @@ enum class Eye : std::int32_t {
     left = BHR_EYE_LEFT,
     /// The right eye.
     right = BHR_EYE_RIGHT,
+};
+
+/// BhrTransport: How bhr_camera_advance carries a camera's axes along.
+enum class Transport : std::int32_t {
+    /// Forward and up keep their angles to e_r, e_th and e_ph.
+    triad = BHR_TRANSPORT_TRIAD,
+    /// Forward and up stay parallel to themselves along the world line, as the axes of gyroscopes do.
+    parallel = BHR_TRANSPORT_PARALLEL,
 };
 
 /// BhrDiskReference: The ring at whose radius a disk has the stated temperature and brightness.

@@ -32,8 +32,8 @@ struct CameraFields {
     Motion motion;
     /// Reserved: 0.
     std::uint32_t reserved;
-    /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a direction
-    /// given at position.
+    /// For BHR_MOTION_VELOCITY: v / c against the observer of the chart's triad (by default the local static one, the
+    /// ZAMO), |v| < 1; components as for a direction given at position.
     Vector velocity;
     /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
     /// left less than right, down less than up.
@@ -52,6 +52,11 @@ struct CameraFields {
     Eye eye;
     /// Reserved: 0.
     std::uint32_t reserved2;
+    /// BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths and
+    /// points that this context is asked for.
+    Chart chart;
+    /// BHR_TRANSPORT_*.
+    Transport transport;
 };
 
 /// BhrDisk: A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux.

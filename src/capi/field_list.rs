@@ -64,6 +64,12 @@ unsafe impl Described for BhrCamera {
             offset: offset_of!(BhrCamera, eye),
             kind: Kind::Word(&[("middle", 0), ("left", 1), ("right", 2)]),
         },
+        Field { name: "chart", offset: offset_of!(BhrCamera, chart), kind: Kind::Word(&[("static", 0), ("rain", 1)]) },
+        Field {
+            name: "transport",
+            offset: offset_of!(BhrCamera, transport),
+            kind: Kind::Word(&[("triad", 0), ("parallel", 1)]),
+        },
     ];
 }
 

@@ -88,9 +88,9 @@ class Projection(enum.IntEnum):
 class Motion(enum.IntEnum):
     """How the camera's observer moves."""
 
-    #: At rest; with spin, the zero angular momentum observer (ZAMO).
+    #: At rest, outside the horizon; with spin, the zero angular momentum observer (ZAMO).
     STATIC = 0
-    #: Falls radially from rest at infinity, inside a spin-0 horizon too.
+    #: Falls from rest at infinity with E = 1 and L = Q = 0, inside the horizon too (with spin in chart RAIN).
     FREE_FALL = 1
     #: On a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on
     #: the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
@@ -108,6 +108,15 @@ class Eye(enum.IntEnum):
     LEFT = 1
     #: The right eye.
     RIGHT = 2
+
+
+class Transport(enum.IntEnum):
+    """How bhr_camera_advance carries a camera's axes along."""
+
+    #: Forward and up keep their angles to e_r, e_th and e_ph.
+    TRIAD = 0
+    #: Forward and up stay parallel to themselves along the world line, as the axes of gyroscopes do.
+    PARALLEL = 1
 
 
 class DiskReference(enum.IntEnum):
@@ -403,6 +412,8 @@ MotionName = Literal["static", "free_fall", "orbit", "velocity"]
 MotionLike = Union[Motion, MotionName]
 EyeName = Literal["middle", "left", "right"]
 EyeLike = Union[Eye, EyeName]
+TransportName = Literal["triad", "parallel"]
+TransportLike = Union[Transport, TransportName]
 DiskReferenceName = Literal["at_hottest", "at_median"]
 DiskReferenceLike = Union[DiskReference, DiskReferenceName]
 EmissionLawName = Literal["isotropic", "limb_darkened"]
@@ -437,6 +448,7 @@ NAMES: dict[type[enum.IntEnum], Any] = {
     Projection: ProjectionName,
     Motion: MotionName,
     Eye: EyeName,
+    Transport: TransportName,
     DiskReference: DiskReferenceName,
     EmissionLaw: EmissionLawName,
     VolumeShape: VolumeShapeName,

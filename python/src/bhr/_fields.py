@@ -11,6 +11,8 @@ from ._camera import CameraMethods
 from ._constants import (
     AdapterFlags,
     Backend,
+    Chart,
+    ChartName,
     ColourMap,
     ColourMapName,
     DiskFlags,
@@ -32,6 +34,8 @@ from ._constants import (
     SkyFlags,
     ToneMap,
     ToneMapName,
+    Transport,
+    TransportName,
     VolumeFlags,
     VolumeResolution,
     VolumeResolutionName,
@@ -47,7 +51,7 @@ class Camera(CameraMethods):
     """The camera: an observer with a lens. Positions and axes in scene axes and lengths."""
 
     c_name: ClassVar[str] = "BhrCamera"
-    c_enums = {"projection": Projection, "motion": Motion, "eye": Eye}
+    c_enums = {"projection": Projection, "motion": Motion, "eye": Eye, "chart": Chart, "transport": Transport}
 
     #: Default (0, 26, 2.5). Not (0, 0, 0).
     position: Vector = (0.0, 26.0, 2.5)
@@ -62,8 +66,8 @@ class Camera(CameraMethods):
     projection: Named[Projection, ProjectionName] = named(Projection.PERSPECTIVE)
     #: One of Motion. Default STATIC.
     motion: Named[Motion, MotionName] = named(Motion.STATIC)
-    #: For Motion.VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a direction given
-    #: at position. Default 0.
+    #: For Motion.VELOCITY: v / c against the observer of the chart's triad (by default the local static one, the ZAMO),
+    #: |v| < 1; components as for a direction given at position. Default 0.
     velocity: Vector = (0.0, 0.0, 0.0)
     #: For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9; left
     #: less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
@@ -84,6 +88,12 @@ class Camera(CameraMethods):
     #: beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the GPU
     #: are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md.
     eye: Named[Eye, EyeName] = named(Eye.MIDDLE)
+    #: One of Chart: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths and
+    #: points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that is to
+    #: go there is told in it from its begin. Default STATIC.
+    chart: Named[Chart, ChartName] = named(Chart.STATIC)
+    #: One of Transport. Default TRIAD.
+    transport: Named[Transport, TransportName] = named(Transport.TRIAD)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -369,8 +379,10 @@ class HoleInfo(Struct):
     shadow_angular_radius: float
     #: Boyer-Lindquist r of the camera.
     camera_radius: float
-    #: d tau / d t, the rate of the clock of the camera's observer.
+    #: d tau / d t, the rate of the clock of the camera's observer; t is the time of BhrCamera.chart.
     camera_time_rate: float
+    #: r- = M - sqrt(M^2 - a^2), down to which the inside of a spinning hole is known; 0 without spin.
+    inner_horizon_radius: float
 
 
 @dataclasses.dataclass(frozen=True)
