@@ -378,6 +378,121 @@ static void redshifts(void) {
     }
 }
 
+/* A body of this four-velocity, (t, r, theta, phi), as the chart STATIC has it: the ZAMO measures its velocity. */
+static BhrBody body_of(double a, const double place[4], const double velocity[4]) {
+    const double r = place[1], s = sin(place[2]), c = cos(place[2]);
+    const Zamo   z = zamo(a, r, place[2]);
+    const double gamma = z.lapse * velocity[0];
+    const double v_r = sqrt(z.sigma / z.delta) * velocity[1] / gamma, v_th = sqrt(z.sigma) * velocity[2] / gamma;
+    const double v_ph = z.ring * (velocity[3] - z.drag * velocity[0]) / gamma;
+    const double across = s * v_r + c * v_th, cos_ph = cos(place[3]), sin_ph = sin(place[3]);
+    BhrBody      body;
+    BHR_INIT(body);
+    body.time = place[0];
+    body.position[0] = r * s * cos_ph, body.position[1] = r * s * sin_ph, body.position[2] = r * c;
+    body.velocity[0] = across * cos_ph - v_ph * sin_ph, body.velocity[1] = across * sin_ph + v_ph * cos_ph;
+    body.velocity[2] = c * v_r - s * v_th;
+    return body;
+}
+
+/* Orbits, eccentric and inclined, followed back to t = 0: there the body is at its pericentre and farthest north, at
+ * the azimuth 0. */
+static void world_lines(void) {
+    static const struct {
+        double a, p, e, x, place[4], velocity[4];
+    } ORBITS[] = {
+        {0.5, 12.0, 0.0, -0.5,
+         {166.7059177650897, 12.0, 2.10812757877503, -4.259771928330167},
+         {1.156891515688051, 0.0, -0.02303176634052743, -0.01848460266616635}},
+        {0.842, 10.327, 0.016, -0.177,
+         {126.2072096081305, 10.4525578382111, 2.406599648616607, -4.311970939013157},
+         {1.184534194830607, 0.002477766622217036, -0.03394367724249028, -0.01206359235158676}},
+        {0.356, 14.311, 0.046, -0.634,
+         {231.4275724231566, 15.00084341883831, 1.875096646444973, -4.393484457675461},
+         {1.11768870080849, -0.0002436675582642042, -0.01432761896233935, -0.01310901616874933}},
+        {0.223, 16.8, 0.62, 0.203,
+         {766.4365971134416, 35.19414289251847, 1.705115106148005, 4.712287471752534},
+         {1.04151991778144, -0.07658938356174062, -0.003615502704521024, 0.0007741333022853813}},
+        {0.186, 8.077, 0.623, 0.117,
+         {48.76910710478514, 7.61866634125127, 2.559874420819628, 4.632161533186826},
+         {1.309672501577718, 0.143229479994781, -0.06246994326402222, 0.02587196214589515}},
+        {0.479, 19.892, 0.159, 0.839,
+         {473.2286147256612, 21.78763307921255, 1.5361609325533, 4.812954183340091},
+         {1.074651984152358, -0.02774025530969955, -0.005466991248590246, 0.008544838055377722}},
+    };
+    begin_section("World lines of bodies on inclined, eccentric orbits: back from Mino time 1 to the pericentre",
+                  "KerrGeoPy (Black Hole Perturbation Toolkit), commit 58dac1d0, tests/data, by Mathematica");
+    for (size_t i = 0; i < COUNT_OF(ORBITS); i++) {
+        const double a = ORBITS[i].a, pericentre = ORBITS[i].p / (1.0 + ORBITS[i].e);
+        char         what[96];
+        set_spin(a);
+        const BhrBody body = body_of(a, ORBITS[i].place, ORBITS[i].velocity);
+        BhrBody       there = body;
+        double        proper_time = 0.0;
+        /* The secant is Newton's method by the mean rate, which is near the one at the end. */
+        for (int k = 0; k < 40 && (k == 0 || fabs(there.time) > 1e-12 * body.time); k++) {
+            proper_time -= there.time * (k == 0 ? 1.0 / ORBITS[i].velocity[0] : proper_time / (there.time - body.time));
+            BHR_INIT(there);
+            if (!worked(bhr_world_line(context, &body, &proper_time, 1, &there, sizeof there))) {
+                there.position[0] = NAN;
+                break;
+            }
+        }
+        const double *n = there.position, *v = there.velocity;
+        const double  r = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        snprintf(what, sizeof what, "r, spin %g, p %g, e %g, x %g", a, ORBITS[i].p, ORBITS[i].e, ORBITS[i].x);
+        compare(what, pericentre, r, 1e-10);
+        compare("  cos theta", sqrt(1.0 - ORBITS[i].x * ORBITS[i].x), n[2] / r, 1e-10);
+        compare("  azimuth", 0.0, atan2(n[1], n[0]), 1e-9);
+        compare("  velocity outwards", 0.0, (n[0] * v[0] + n[1] * v[1] + n[2] * v[2]) / r, 1e-9);
+        compare("  velocity north", 0.0, v[2], 1e-9);
+    }
+}
+
+/* Rays that the rain observer sees inside the horizon, azimuth 0. */
+static void inside(void) {
+    static const struct {
+        double a, r, theta, look[3], sky[3], g;
+    } RAYS[] = {
+        {0.9, 1.2, 75.0, {0.625, -0.70005086633365, 0.34540379926327},
+         {0.63012924494023, 0.39759849438169, 0.66697269204704}, 0.72502765063561},
+        {0.9, 1.2, 75.0, {-0.625, -0.77605953365534, -0.08430065374991901},
+         {-0.55113592377173, -0.13719073550564, 0.82306008020053}, 2.3537419630672},
+        {0.9, 0.6, 30.0, {0.375, 0.89007786358257, 0.25910692148281},
+         {0.75411860289181, 0.44488832176735, 0.48309369063105}, 0.79514867774623},
+        {0.5, 0.2, 100.0, {0.875, 0.17543398929568, -0.45121825694425},
+         {0.93752604539429, 0.057048412295763, -0.34320605015338}, 0.32049999687272},
+        {0.998, 1.0, 85.0, {0.125, -0.51510661398772, -0.84796236722281},
+         {0.87241163352091, -0.34416515380542, 0.34705660720331}, 0.50859457693729},
+        {0.9999, 1.005, 50.0, {0.625, -0.70005086633365, 0.34540379926327},
+         {0.19840024105736, 0.31768901280283, 0.92720603723916}, 0.71264386112761},
+        {-0.9, 1.0, 120.0, {-0.625, -0.77605953365534, -0.08430065374991901},
+         {-0.3565614244984, -0.20055675813782, 0.91249160945453}, 3.4575864092086},
+    };
+    begin_section("Light inside a spinning hole, as an observer sees it who falls from rest at infinity",
+                  "rays integrated in Cartesian Kerr-Schild coordinates, without Carter's constant: tests/golden");
+    for (size_t i = 0; i < COUNT_OF(RAYS); i++) {
+        const double theta = RAYS[i].theta * PI / 180.0, r = RAYS[i].r, *look = RAYS[i].look;
+        BhrCamera    camera;
+        char         what[64];
+        set_spin(RAYS[i].a);
+        set_camera(r, theta, BHR_MOTION_FREE_FALL);
+        BHR_INIT(camera);
+        worked(bhr_get_camera(context, &camera));
+        camera.chart = BHR_CHART_RAIN;
+        worked(bhr_set_camera(context, &camera));
+        const BhrHit hit = trace(r, theta, look[0], look[1], look[2]);
+        double       off = 0.0;
+        for (int k = 0; k < 3; k++) {
+            off += pow(hit.sky_direction[k] - RAYS[i].sky[k], 2.0);
+        }
+        snprintf(what, sizeof what, "spin %g, r = %g: angle to the true place in the sky", RAYS[i].a, r);
+        compare(what, 0.0, hit.fate == BHR_FATE_ESCAPED ? sqrt(off) : NAN, 1e-9);
+        compare("  frequency by that at infinity", RAYS[i].g, hit.sky_redshift, 1e-11);
+    }
+    set_camera(40.0, 1.0, BHR_MOTION_STATIC);
+}
+
 int main(int argc, char **argv) {
     int          json = 0, markdown = 0, help = 0;
     const Option options[] = {
@@ -413,6 +528,8 @@ int main(int argc, char **argv) {
     first_crossings();
     circular_orbits();
     redshifts();
+    world_lines();
+    inside();
     bhr_context_destroy(context);
     if (form == JSON) {
         printf("\n]\n");

@@ -113,8 +113,8 @@ struct Frame {
     hole_mass: f32,
     // 1 where the occluder's things are lensed, else 0.
     occluder_lensed: f32,
-    // Columns that take directions along the observer's axes to the chart as hosts have them (Lens::placed), each with a
-    // number beside it: the delays of the camera's chart less those of records (1e38: it has none), and lapse and
+    // Columns that take directions along the observer's axes to the chart as hosts have them (Lens::placed), each with
+    // a number beside it: the delays of the camera's chart less those of records (1e38: it has none), and lapse and
     // angular velocity of the static observer (StaticObserver) at a rain frame; a lapse of 0 where there is none.
     placed_r: vec3<f32>,
     delay_offset: f32,

@@ -235,7 +235,7 @@ fn mistakes_are_told_where_they_stand() {
         let told = refused(text);
         assert!(told.contains(words), "{told}\n{words}\n{text}");
     }
-    let error = SceneFile::parse("[camera]\nmotion = 'velocity'\nproper_time = 1", Path::new("")).err().unwrap();
+    let error = SceneFile::parse("[camera]\ntransport = 'parallel'\nproper_time = 1", Path::new("")).err().unwrap();
     assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
 }
 

@@ -290,7 +290,8 @@ fn table_agrees_with_integration() {
     let mut m = measure(0..40, 250, None, true);
     m.report("coarse");
     println!("{}", m.worst);
-    assert!(m.about_direct * 40 < m.about, "{} of {} direct", m.about_direct, m.about);
+    // A quarter of the observers are at spin 0.9999, where more rays come beside the horizon.
+    assert!(m.about_direct * 25 < m.about, "{} of {} direct", m.about_direct, m.about);
     assert!(m.radius.len() > 4000 && m.sky.len() > 5000);
     assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
     assert!(quantile(&mut m.sky, 0.9999) < 0.01 && quantile(&mut m.sky, 1.0) < 0.1);
