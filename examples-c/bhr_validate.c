@@ -474,7 +474,7 @@ static void inside(void) {
     for (size_t i = 0; i < COUNT_OF(RAYS); i++) {
         const double theta = RAYS[i].theta * PI / 180.0, r = RAYS[i].r, *look = RAYS[i].look;
         BhrCamera    camera;
-        char         what[64];
+        char         what[96];
         set_spin(RAYS[i].a);
         set_camera(r, theta, BHR_MOTION_FREE_FALL);
         BHR_INIT(camera);

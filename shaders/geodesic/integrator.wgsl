@@ -197,7 +197,7 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     return select(1e30, limit, s.u > 0.3 * u_plus && !leaves);
 }
 
-// The same in Doran's chart.
+// step_limit in Doran's chart.
 fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
     let curvature = u_acceleration(c, s.u);

@@ -341,7 +341,7 @@ impl Constants {
         }
     }
 
-    /// Those of Doran's chart about a spinning hole at u, outside the horizon.
+    /// The offsets of Doran's chart about a spinning hole at u, outside the horizon.
     fn chart_offsets(&self, u: f64) -> Offsets {
         match &self.offsets {
             Some(series) => series.at(u, 1.0 - self.r_plus * u),

@@ -473,8 +473,8 @@ impl Observer {
         Self { frame, beta: DVec3::ZERO, gamma: 1.0 }
     }
 
-    /// Falls radially from rest at infinity: E = 1, L = Q = 0, so that th stays. Spin 0: at rest in the rain frame, at any
-    /// r. With spin: against the ZAMO.
+    /// Falls radially from rest at infinity: E = 1, L = Q = 0, so that th stays. Spin 0: at rest in the rain frame, at
+    /// any r. With spin: against the ZAMO.
     pub fn free_fall(frame: LocalFrame) -> Self {
         if frame.a == 0.0 {
             return Self::at_rest(frame.to_rain());
@@ -492,7 +492,8 @@ impl Observer {
     /// their axes: n in the axes of `self` is turn * n in those of the result, both boosted without rotation.
     ///
     /// Two boosts make a boost and a turn (Thomas 1926; Wigner 1939). With spinors, exp(eta / 2 v.sigma), and T = gamma
-    /// beta / (gamma + 1), which is tanh(eta / 2) v: the half angle of the turn has the tangent |T1 x T2| / (1 + T1.T2).
+    /// beta / (gamma + 1), which is tanh(eta / 2) v: half the angle of the turn has the tangent |T1 x T2| / (1 +
+    /// T1.T2).
     pub fn carried_by(&self, carrier: &Self) -> (Self, DMat3) {
         let half = |observer: &Self| observer.beta * (observer.gamma / (observer.gamma + 1.0));
         let (first, second) = (half(carrier), half(self));

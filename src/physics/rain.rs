@@ -89,7 +89,7 @@ pub struct OffsetSeries {
     r_minus: f64,
     /// sqrt(r+), sqrt(r-).
     roots: [f64; 2],
-    /// What artanh(sqrt(r+) v) and artanh(sqrt(r-) v) are multiplied by.
+    /// The factors of artanh(sqrt(r+) v) and artanh(sqrt(r-) v).
     pub poles: [DVec2; 2],
     /// The coefficients of P in 2 v / v+ - 1.
     pub terms: [DVec2; OFFSET_TERMS],

@@ -125,7 +125,8 @@ pub struct Camera {
     /// Default pi / 4.
     pub fov_y: f64,
     pub motion: Motion,
-    /// v / c against the observer of the chart's triad, |v| < 1; components as for a direction given at `position` (bhr.h).
+    /// v / c against the observer of the chart's triad, |v| < 1; components as for a direction given at `position`
+    /// (bhr.h).
     pub velocity: DVec3,
     /// The borders of a `Frustum`'s picture. Default: 45 degrees each way.
     pub frustum: Frustum,

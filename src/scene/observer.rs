@@ -30,8 +30,8 @@ impl Scene {
                 Number(position.z)
             )),
             NoFrame::InsideSpinningHorizon => Error::unsupported(format!(
-                "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; there observers have places in the \
-                 chart BHR_CHART_RAIN only",
+                "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; there observers have places in \
+                 the chart BHR_CHART_RAIN only",
                 Number(chart.length()),
                 Number(horizon_outer(self.hole.spin)),
                 Number(self.hole.spin)
@@ -221,7 +221,7 @@ pub struct Lens {
     /// observer's frame.
     pub axes: DMat3,
     pub mapping: Mapping,
-    /// As of `Viewpoint`.
+    /// Both from `Viewpoint`.
     pub place: LocalFrame,
     pub turn: DMat3,
     /// The delays of the camera's chart less those of records, M; NaN where the chart has none.

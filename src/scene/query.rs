@@ -271,7 +271,8 @@ impl Scene {
         [axes[0], axes[1]].map(|axis| self.hole.scene_to_chart().transpose() * place.vector(axis))
     }
 
-    /// A body in free fall, and axes that it carries along, after the proper time `tau`, M. Errors: as `advance_camera`.
+    /// A body in free fall, and axes that it carries along, after the proper time `tau`, M. Errors: as
+    /// `advance_camera`.
     fn fall(&self, body: &Body, axes: [DVec3; 3], tau: f64) -> Result<Event> {
         let a = self.hole.spin;
         let events = world_line(a, body, &axes, &[tau])?;
@@ -314,8 +315,8 @@ fn angles(indices: &[usize]) -> i32 {
     indices.iter().filter(|&&i| i >= 2).count() as i32
 }
 
-/// The region that a `width` x `height` image is, of itself without one. Errors: INVALID_ARGUMENT for a side of 0, and as
-/// `Region::check_image`.
+/// The region that a `width` x `height` image is, of itself without one. Errors: INVALID_ARGUMENT for a side of 0, and
+/// as `Region::check_image`.
 pub(super) fn image_region(width: u32, height: u32, region: Option<Region>) -> Result<Region> {
     let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
     if width == 0 || height == 0 {

@@ -39,7 +39,7 @@ fn camera(scene: &Scene, chart_: Chart, motion: Motion, place: [f64; 3]) -> Came
     }
 }
 
-/// What tracers see through the pixel position, as a host's ray would have it: fate, sky direction and g.
+/// Traces the ray through the pixel position as tracers do; and g of the sky.
 fn traced(scene: &Scene, x: f64, y: f64) -> (RayTrace, f64) {
     let lens = scene.lens(&REGION).unwrap();
     let (n, ratio) = lens.observer.aberrate(lens.look_direction(x, y));

@@ -155,12 +155,12 @@ static void rays(BhrContext *context) {
           apart(hit.sky_direction, sky));
     CHECK(fabs(hit.sky_redshift / 0.47518537693661 - 1.0) < 1e-10, "%.14g", hit.sky_redshift);
     /* Its path begins at the camera and ends far outside. */
-    double path[64][4];
-    size_t count = 0;
-    CHECK_OK(bhr_trace_path(context, &ray, &path[0][0], 64, &count));
-    CHECK(count == 64 && apart(path[0], ray.position) < 1e-9 && length(path[63]) > 900.0 * MASS, "%zu points", count);
-    for (size_t i = 1; i < count; i++) {
-        CHECK(path[i][3] < path[i - 1][3], "time does not run backward at point %zu", i);
+    double   path[64][4];
+    uint32_t count = 0;
+    CHECK_OK(bhr_trace_path(context, &ray, 64, &path[0][0], &count));
+    CHECK(count == 64 && apart(path[0], ray.position) < 1e-9 && length(path[63]) > 900.0 * MASS, "%u points", count);
+    for (uint32_t i = 1; i < count; i++) {
+        CHECK(path[i][3] < path[i - 1][3], "time does not run backward at point %u", i);
     }
     /* Rays of the camera are in its chart; what is traced from them is what pixels show. */
     CHECK_OK(bhr_camera_ray(context, 32, 32, 16.0, 16.0, &ray));

@@ -106,7 +106,7 @@ fn reference_rays_of_rain_observers() {
     assert!(sky < 1e-9 && shift < 1e-12 && radius < 1e-9 && azimuth < 1e-9 && constants < 1e-11);
 }
 
-/// The same rays as hosts have them, in a scene of a mass and an axis of its own: `Scene::start` and `Scene::hit`.
+/// The reference rays as hosts have them, in a scene of another mass and axis: `Scene::start` and `Scene::hit`.
 #[test]
 fn hosts_rays_in_the_rain_chart() {
     let file = golden("worldlines.json");

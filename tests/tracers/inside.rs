@@ -27,7 +27,7 @@ fn camera(motion: Motion, [r, theta, azimuth]: [f64; 3]) -> Camera {
 
 type Set = fn(&mut Scene);
 
-/// What shines besides the sky.
+/// Matter that shines besides the sky.
 fn matter() -> [(&'static str, Set); 5] {
     [
         ("a disk", |scene| scene.disk = Some(Disk { turbulence: 0.0, ..Disk::plain() })),

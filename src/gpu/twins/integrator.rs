@@ -46,7 +46,7 @@ fn with_step(i: &mut Inputs, ray: fn(&mut Inputs), [low, high]: [f64; 2]) {
     }
 }
 
-/// The same where rates change from 1 to 30 over it, inside the horizon.
+/// `STEP` inside the horizon, where rates may change from 1 to 30 over a step.
 const RAIN_STEP: f64 = 1e-5;
 
 /// A ray of the rain frame of a spinning hole, and a step in tau behind it.

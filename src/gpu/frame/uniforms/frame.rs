@@ -146,7 +146,8 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, shown_edges,
         least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x, occluder_origin,
         hole_mass, occluder_lensed, placed_r, delay_offset, placed_theta, static_lapse, placed_phi,
-        static_angular_velocity, eye, rain_triad, offset_poles, offset_terms, bands, depth_u, matter_count, matter_delay, matter);
+        static_angular_velocity, eye, rain_triad, offset_poles, offset_terms, bands, depth_u, matter_count,
+        matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, curve_samples, light_origin,
         image_origin, pixels_first, pixels_row);
     [frame, pass]
