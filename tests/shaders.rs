@@ -152,6 +152,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
+    ("camera/chart", "chart_offsets", "for (var i = OFFSET_PAIRS - 1u; i > 0u; i--)", CONSTANT),
     ("emit/bake", "bake_texels", "for (var k = 0u; k < ROW_GENERATIONS; k += 1u)", CONSTANT),
     ("emit/layers", "add_alone", "for (var span = 0u; span < spans && !is_dark(); span += 1u)", LAYERS),
     ("emit/layers", "add_alone", "for (var i = select(0u, 1u, reuses); i < 3u; i += 1u)", CONSTANT),
@@ -172,6 +173,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("emit/volumes", "add_piece", "for (var node = 0u; node < nodes; node += 1u)", CONSTANT),
     ("emit/volumes", "coefficients_at", "for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u)", MATTER),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
+    ("geodesic/integrator", "rain_step", "for (var i = 0; i < 3; i++)", CONSTANT),
     ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
     ("geodesic/trace", "tau_at_horizon", "for (var i = 0; i < 4; i++)", CONSTANT),
     (

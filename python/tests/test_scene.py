@@ -204,8 +204,27 @@ def test_a_camera_falls(ctx):
     radius = (10.0**1.5 - 1.5 * math.sqrt(2.0)) ** (2.0 / 3.0)
     assert np.linalg.norm(fallen.position) == pytest.approx(radius) and elapsed > 1.0
     with pytest.raises(bhr.Error) as caught:
-        ctx.advance(camera.replace(motion=bhr.Motion.VELOCITY), 1.0)
+        ctx.advance(camera.replace(motion=bhr.Motion.STATIC, transport=bhr.Transport.PARALLEL), 1.0)
     assert caught.value.status == bhr.Status.UNSUPPORTED
+    # A body in free fall.
+    thrown = camera.replace(motion=bhr.Motion.VELOCITY, velocity=(0.0, 0.3, 0.0))
+    moved, elapsed = ctx.advance(thrown, 1.0)
+    assert elapsed > 1.0 and moved.velocity != thrown.velocity
+
+
+def test_inside_a_spinning_hole(any_ctx):
+    """Falling in the chart RAIN, through the horizon to the inner one."""
+    ctx = any_ctx
+    ctx.spin = 0.9
+    camera = bhr.Camera.orbit(1.6, 0.0, 0.3, motion=bhr.Motion.FREE_FALL, chart=bhr.Chart.RAIN)
+    ctx.camera, elapsed = ctx.advance(camera, 0.2)
+    info = ctx.hole_info()
+    assert info.inner_horizon_radius < info.camera_radius < info.horizon_radius
+    assert abs(elapsed - 0.2) < 1e-12 and info.camera_time_rate == 1.0
+    image = ctx.render(32, 18)
+    assert image.shape == (18, 32, 4)
+    with pytest.raises(bhr.Error, match="inner horizon"):
+        ctx.advance(camera, 9.0)
 
 
 REFUSED = [

@@ -2,6 +2,7 @@
 // How far look directions are from the critical curve, by their rays' constants alone. Mirrors `CurveLevel` of
 // src/physics/lens/critical.rs, where the formulas are; knows no tables and integrates nothing.
 
+#import constants
 #import camera/observer
 #import geodesic/geodesic
 #import shared/frame
@@ -16,8 +17,23 @@ fn potential_minimum(c: Constants) -> f32 {
     return min(2.0 * rise / max(b3 + root, 1e-30), 1.0 / c.r_plus);
 }
 
+// CurveLevel::within.
+fn curve_level_within(n: vec3<f32>) -> f32 {
+    let begin = begin_local(n);
+    let c = begin.c;
+    let u = potential_minimum(c);
+    let root = sqrt(max(u * u * (c.k - c.a2e2 - u * (2.0 * c.b - u * c.a2q)), 0.0)) / abs(c.energy);
+    let inward = begin.state.du > 0.0;
+    let before = begin.state.u < u;
+    let level = select(select(1.0 - root, 1.0, before), select(-1.0, root - 1.0, before), inward);
+    return select(-1.0, level, begin.has_light && c.energy > 0.0);
+}
+
 // 0 on the curve, positive where rays escape. `n`: look direction in the local frame.
 fn curve_level(n: vec3<f32>) -> f32 {
+    if SPINNING && not_inlined(frame.critical_by_margin) == MARGIN_OF_ALL {
+        return curve_level_within(n);
+    }
     if SPINNING && n.x < 0.0 && not_inlined(frame.critical_by_margin) != 0u {
         let c = begin_local(n).c;
         let u = potential_minimum(c);

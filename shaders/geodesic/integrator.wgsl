@@ -197,6 +197,11 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     return select(1e30, limit, s.u > 0.3 * u_plus && !leaves);
 }
 
+// The shortest step in sigma in Doran's chart.
+const LEAST_STEP: f32 = 2e-3;
+// So near to the horizon, relative, u' is left as it is: D is lost in rounding there.
+const HELD_FROM: f32 = 1e-5;
+
 // step_limit in Doran's chart.
 fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
@@ -213,7 +218,8 @@ fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
     if inside {
         limit = min(h * relative, select(in_room, advance, total >= 0.0));
     }
-    return select(1e30, limit, s.u > 0.3 * u_plus);
+    // In steps that are shorter, rounding leaves u where it is.
+    return select(1e30, max(limit, LEAST_STEP / c.scale), s.u > 0.3 * u_plus);
 }
 
 // Inside the horizon with u' from the first integral (integrator.rs: held_inside).
@@ -223,7 +229,7 @@ fn held_inside(c: Constants, s: State) -> State {
         let w = radial_energy(c, s.u);
         let d = (1.0 - c.r_plus * s.u) * (1.0 - c.r_minus * s.u);
         let du = -sqrt(max(w * w - d * c.b * s.u * s.u, 0.0));
-        held.du = select(s.du, du, s.du < 0.0 && s.u * c.r_plus >= 1.0);
+        held.du = select(s.du, du, s.du < 0.0 && s.u * c.r_plus >= 1.0 + HELD_FROM);
     }
     if !SPINNING && STEP_LIMIT {
         let du = -sqrt(max(c.energy * c.energy + c.k * s.u * s.u * (2.0 * s.u - 1.0), 0.0));

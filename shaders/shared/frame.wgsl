@@ -61,7 +61,7 @@ struct Frame {
     turbulence_strength: f32,
     turbulence_delay: f32,
     turbulence_fades_inside: f32,
-    // Sine and cosine of the critical angle, and 1 if the capture margin tells the level, else 0, of CurveLevel in
+    // Sine and cosine of the critical angle, and the rays whose capture margin tells the level, of CurveLevel in
     // src/physics/lens/critical.rs.
     critical: vec2<f32>,
     critical_by_margin: u32,

@@ -103,6 +103,11 @@ static void scene() {
     EXPECT(context.camera().value().motion == bhr::Motion::free_fall);
     const double gone = context.advance(camera, 1.0).value();
     EXPECT(gone > 1.0 && std::hypot(camera.position[0], camera.position[2]) < 20.0);
+    camera.chart = bhr::Chart::rain;
+    camera.transport = bhr::Transport::parallel;
+    EXPECT(context.set_camera(camera) && context.camera().value().chart == bhr::Chart::rain);
+    camera.chart = bhr::Chart::static_;
+    camera.transport = bhr::Transport::triad;
     camera.motion = bhr::Motion::static_;
     EXPECT(camera.orbit(20.0, 0.0, 0.1) && context.set_camera(camera));
 

@@ -132,9 +132,9 @@ fn the_tracers_agree_on_views() {
 #[test]
 fn a_fall_has_no_seam() {
     const STEP: f64 = 1e-4;
-    let spin = 0.9;
+    let spin = 0.9_f64;
     for (tracer, mut renderer) in both() {
-        for seam in [1.0 + (1.0 - spin * spin as f64).sqrt(), 3.0] {
+        for seam in [1.0 + (1.0 - spin * spin).sqrt(), 3.0] {
             renderer.scene = Scene::plain();
             let scene = &mut renderer.scene;
             (scene.hole.spin, scene.sky, scene.time) = (spin, Sky::black(), 1e3);

@@ -179,7 +179,8 @@ pub fn group() -> Group {
             },
             |i, o| {
                 let (c, s) = (constants(i), state(i, STATE));
-                let limit = step_limit(&c, &s, i.x(BEHIND)).min(1e30);
+                // The shortest step is single precision's own.
+                let limit = step_limit(&c, &s, i.x(BEHIND)).max(2e-3 / c.scale).min(1e30);
                 o.near(limit, limit.min(1.0));
                 put_state(o, &s, &held_inside(&c, s), 0.0);
             },

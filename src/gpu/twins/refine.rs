@@ -227,6 +227,30 @@ pub fn group() -> Group {
         .with(&any),
         twin(
             "camera/critical",
+            "curve_level curve_level_within",
+            "enter_scene(); out1(curve_level(in3(1u)));",
+            |i| loop {
+                i.clear();
+                let view = Kind::SpinningRain.push(i);
+                let n = push_look(i, view);
+                // A ray that neither falls nor rises, or begins at the least potential, may be told either way.
+                let (c, s) = view.lens.observer.frame.start(n.normalize()).expect("light");
+                if s.du.abs() > 1e-3 && (potential_minimum(&c) / s.u - 1.0).abs() > 1e-3 {
+                    return;
+                }
+            },
+            |i, o| {
+                let frame = view(i).lens.observer.frame;
+                let (c, s) = frame.start(i.v3(1).normalize()).expect("light");
+                // P is a difference of terms that grow with 1/r.
+                let size = 1.0 + c.k * s.u * s.u.min(potential_minimum(&c));
+                o.near(CurveLevel::new(&frame).at(i.v3(1).normalize()), size);
+            },
+            1e-5,
+        )
+        .with(&Kind::SpinningRain.constants()),
+        twin(
+            "camera/critical",
             "potential_minimum",
             "enter_scene(); out1(potential_minimum(begin_local(in3(1u)).c));",
             |i| {

@@ -63,6 +63,17 @@ pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
 }
 
+/// The rays whose level is that of their capture margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum ByMargin {
+    None = 0,
+    /// Those that move inwards: observers outside the photon region.
+    Inward = 1,
+    /// All: observers within it, inside the horizon too, from where rays that move outwards may turn back.
+    All = 2,
+}
+
 /// Tells how far look directions are from the critical curve by their rays' constants alone, for every observer, as
 /// far as a curve is known there.
 #[derive(Clone, Copy, Debug)]
@@ -71,20 +82,42 @@ pub struct CurveLevel {
     /// Sine and cosine of psi_c, the angle of the curve from the inward radius; of 0 where no curve is known or it is
     /// no circle about that.
     pub critical: [f64; 2],
-    /// The level of inward rays is that of their capture margin.
-    pub by_margin: bool,
+    pub by_margin: ByMargin,
 }
 
 impl CurveLevel {
     pub fn new(frame: &LocalFrame) -> Self {
         let (sin, cos) = if frame.a == 0.0 { critical_direction(frame.r, frame.rain) } else { (0.0, 1.0) };
-        Self { frame: *frame, critical: [sin, cos], by_margin: frame.a != 0.0 && reaches(frame) }
+        let by_margin = match () {
+            () if frame.a == 0.0 => ByMargin::None,
+            () if reaches(frame) => ByMargin::Inward,
+            () if frame.r > FARTHEST_OBSERVER => ByMargin::None,
+            () => ByMargin::All,
+        };
+        Self { frame: *frame, critical: [sin, cos], by_margin }
+    }
+
+    /// The level where that of all rays is that of their margin: rays that move inwards escape if they turn before they
+    /// fall in, those that move outwards if they do not turn.
+    fn within(&self, n: DVec3) -> f64 {
+        let Some((c, s)) = self.frame.start(n).filter(|(c, _)| c.energy > 0.0) else { return -1.0 };
+        let u = potential_minimum(&c);
+        let root = (1.0 - radial_potential(&c, u) / (c.energy * c.energy)).max(0.0).sqrt();
+        match (s.du > 0.0, s.u < u) {
+            (true, true) => root - 1.0,
+            (true, false) => -1.0,
+            (false, true) => 1.0,
+            (false, false) => 1.0 - root,
+        }
     }
 
     /// 0 on the curve, positive where rays escape, and nearly even across it: psi - psi_c, or, about a spinning hole,
     /// sqrt(1 - P / E^2) - 1, which is sin psi / sin psi_c - 1 without spin. `n`: look direction (components, unit).
     pub fn at(&self, n: DVec3) -> f64 {
-        if self.by_margin && n.x < 0.0 {
+        if self.by_margin == ByMargin::All {
+            return self.within(n);
+        }
+        if self.by_margin == ByMargin::Inward && n.x < 0.0 {
             let margin = self.frame.start(n).map_or(1.0, |(c, _)| capture_margin(&c) / (c.energy * c.energy));
             return (1.0 - margin).max(0.0).sqrt() - 1.0;
         }

@@ -274,7 +274,7 @@ impl FrameUniform {
             turbulence_fades_inside: turbulence.map_or(0.0, |t| t.fades_inside.unwrap_or(-1e30) as f32),
             unused_after_turbulence: 0,
             critical: f32s([sin, cos]),
-            critical_by_margin: by_margin.into(),
+            critical_by_margin: by_margin as u32,
             unused_after_critical: 0,
             disk_u: range(emitters.disk_u()),
             opaque_u: range(settings.opaque_u),
