@@ -74,8 +74,8 @@ fn radial_energy(c: Constants, u: f32) -> f32 {
 // x.
 fn advanced_rate(c: Constants, u: f32, du: f32) -> f32 {
     let w = radial_energy(c, u);
-    let falling = c.b * u * u / (w - du);
-    return select((w + du) / signed_horizon_function(c, u), falling, w >= 0.0 && du <= 0.0);
+    let falls = w >= 0.0 && du <= 0.0;
+    return select(w + du, c.b * u * u, falls) / select(signed_horizon_function(c, u), w - du, falls);
 }
 
 // How fast N turns, at most.
@@ -88,7 +88,7 @@ fn rain_drag_rate(c: Constants, u: f32, du: f32) -> f32 {
     let w = sqrt(2.0 * max(u, 0.0));
     let au2 = c.a * c.a * u * u;
     let q = sqrt(1.0 + au2);
-    let rest = au2 * (1.0 + w / (1.0 + q)) / (q * (q + w) * (1.0 + w));
+    let rest = au2 * (1.0 + q + w) / ((1.0 + q) * q * (q + w) * (1.0 + w));
     return -c.a * (advanced_rate(c, u, du) - c.energy + du * rest);
 }
 

@@ -198,7 +198,7 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
 }
 
 // The shortest step in sigma in Doran's chart.
-const LEAST_STEP: f32 = 2e-3;
+const SHORTEST_ADVANCE: f32 = 2e-3;
 // So near to the horizon, relative, u' is left as it is: D is lost in rounding there.
 const HELD_FROM: f32 = 1e-5;
 
@@ -219,7 +219,7 @@ fn rain_step_limit(c: Constants, s: State, h: f32) -> f32 {
         limit = min(h * relative, select(in_room, advance, total >= 0.0));
     }
     // In steps that are shorter, rounding leaves u where it is.
-    return select(1e30, max(limit, LEAST_STEP / c.scale), s.u > 0.3 * u_plus);
+    return select(1e30, max(limit, SHORTEST_ADVANCE / c.scale), s.u > 0.3 * u_plus);
 }
 
 // Inside the horizon with u' from the first integral (integrator.rs: held_inside).

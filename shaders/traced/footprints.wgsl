@@ -53,6 +53,16 @@ fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     return vec4<f32>(difference, select(0.0, 1.0, has_before || has_after));
 }
 
+// The turn of the sky direction to the neighbours at -+ step, on the side where it turns more: between two that are a
+// whole turn apart it would seem to be none.
+fn widest_turn(here: vec3<f32>, step: vec2<u32>) -> f32 {
+    let before = textureLoad(record_sky, traced_pixel - step, 0);
+    let after = textureLoad(record_sky, traced_pixel + step, 0);
+    let joined = traced_neighbours(step);
+    let back = select(0.0, length(before.xyz - here), joined.x && before.w != 0.0);
+    return max(back, select(0.0, length(after.xyz - here), joined.y && after.w != 0.0));
+}
+
 fn place_of(crossing: vec4<f32>) -> EmissionPoint {
     return EmissionPoint(-log(crossing.x), crossing.z, crossing.w);
 }

@@ -68,7 +68,12 @@ fn edges_of_pixel(through: f32, turn: f32) -> u32 {
     let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
         edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
     let beside = select(vec2<u32>(EDGE_NONE), kinds.xy, traced_joined);
-    let inside = max(turning_edge(turn), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
+    var widest = 0.0;
+    if turn > 0.0 {
+        let sky = textureLoad(record_sky, traced_pixel, 0).xyz;
+        widest = length(vec2<f32>(widest_turn(sky, across), widest_turn(sky, down)));
+    }
+    let inside = max(turning_edge(widest), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
     return max(inside, max(max(beside.x, beside.y), max(kinds.z, kinds.w)));
 }
 

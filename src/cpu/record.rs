@@ -13,7 +13,7 @@ use crate::scene::observer::Lens;
 use crate::scene::occluder::Shown;
 use crate::scene::projection::Mapping;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, polar_momentum};
-use crate::scene::refine::{Edge, is_steep, turn_of, turning_edge};
+use crate::scene::refine::{Edge, is_steep, turning_edge};
 use crate::scene::{Occluder, Scene};
 use glam::DVec3;
 use std::sync::Arc;
@@ -168,13 +168,23 @@ impl<'a> Neighbours<'a> {
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
             record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
-            record.edge = record.edge.max(turning_edge(turn_of(record.footprint)));
+            record.edge = record.edge.max(turning_edge(widest_turn(here, pairs)));
         }
         for crossing in &mut record.crossings {
             crossing.footprint = pairs.map(|(before, after)| derivative_of_place(crossing, before, after));
         }
         record
     }
+}
+
+/// The turn of the sky direction to the neighbours in each row on the side where it turns more, rad: between two that
+/// are a whole turn apart it would seem to be none.
+fn widest_turn(here: &Record, pairs: [(Option<&Record>, Option<&Record>); 2]) -> f64 {
+    let turn = |there: Option<&Record>| {
+        there.filter(|r| r.fate == Fate::Escaped).map_or(0.0, |r| (r.direction - here.direction).length())
+    };
+    let [x, y] = pairs.map(|(before, after)| turn(before).max(turn(after)));
+    x.hypot(y)
 }
 
 /// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin

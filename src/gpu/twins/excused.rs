@@ -181,7 +181,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
         "set_traced_pixel traced_neighbours crossing_of_order",
         Plumbing("it finds a record in textures"),
     ),
-    ("traced/footprints", "sky_footprint derivative_of_direction derivative_of_place", PICTURES),
+    ("traced/footprints", "sky_footprint derivative_of_direction widest_turn derivative_of_place", PICTURES),
     ("traced/pixels", "on_crossing trace_pixel", PICTURES),
     (
         "traced/record",
