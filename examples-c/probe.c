@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* probe.c -- a probe falls into a spinning hole while a camera at rest looks after it: where the probe is seen, how red,
- * how dim, and how slowly its clock is seen to go. The light that arrives at a time left the probe at the proper time
- * that solves time + delay = arrival: bhr_world_line says when and where the probe is, bhr_project_point how long its
- * light takes and where on the screen it comes from. The probe crosses the horizon, but is never seen to. All is told in
- * the chart RAIN, in which its world line goes on inside. Draws direct images, in front of whatever hides them. */
+/* probe.c -- a probe falls into a spinning hole while a camera at rest looks after it: where the probe is seen, how
+ * red, how dim, and how slowly its clock is seen to go. The light that arrives at a time left it at the proper time that
+ * solves time + delay = arrival: bhr_world_line says when and where the probe is, bhr_project_point how long its
+ * light takes and where on the screen it comes from. The probe crosses the horizon, but is never seen to. All is told
+ * in the chart RAIN, in which its world line goes on inside. Draws direct images, in front of whatever hides them. */
 #include "options.h"
 #include "picture.h"
 #include "plot.h"
@@ -15,7 +15,8 @@
 #define MOST_FRAMES 99999u
 #define HALVINGS 52             /* of the proper times between which the one that is seen lies: to the last bit */
 #define RATE_STEP 1e-3          /* of the proper time that is left: over which the rate of the clock is measured */
-#define FIRST_STEP 1e-6         /* M: at the beginning of the world line */
+#define LONGEST 1e5             /* M of proper time: a probe that is outside then is said to stay there */
+#define LAST_STEP 0.01          /* M: and at most */
 #define LAMP 8.0                /* how bright the probe is in its own frame: at half the frequency it is white */
 #define FAINTEST 1e-4           /* of white: dimmer lamps are not drawn */
 
@@ -44,30 +45,43 @@ typedef struct Sight {
     double            arrival; /* T at the camera; INFINITY: no light of it ever comes there */
 } Sight;
 
-/* The probe at a proper time. Errors: as the library's. */
+/* The probe at a proper time; *out_outside: whether it is outside the horizon still. Errors: as the library's. */
+static BhrStatus find_probe(const Chase *chase, double proper_time, BhrBody *out, int *out_outside) {
+    BHR_INIT(*out);
+    BhrStatus status = bhr_world_line(chase->context, &chase->start, &proper_time, 1, out, sizeof *out);
+    *out_outside = status >= 0 && out->end == BHR_WORLD_LINE_GOES_ON && length(out->position) > chase->horizon;
+    return status;
+}
+
+/* The probe at a proper time, and its image. */
 static BhrStatus look_at(const Chase *chase, double proper_time, Sight *out) {
-    BHR_INIT(out->body);
+    int outside;
     BHR_INIT(out->image);
     out->arrival = INFINITY;
-    BhrStatus status = bhr_world_line(chase->context, &chase->start, &proper_time, 1, &out->body, sizeof out->body);
-    if (status < 0 || out->body.end != BHR_WORLD_LINE_GOES_ON || length(out->body.position) <= chase->horizon) {
-        return status;
+    BhrStatus status = find_probe(chase, proper_time, &out->body, &outside);
+    if (status >= 0 && outside) {
+        status = bhr_project_point(chase->context, chase->size[0], chase->size[1], out->body.position, 0, &out->image);
     }
-    status = bhr_project_point(chase->context, chase->size[0], chase->size[1], out->body.position, 0, &out->image);
     if (status >= 0 && out->image.found) {
         out->arrival = out->body.time + out->image.delay;
     }
     return status;
 }
 
-/* The proper time between two at which the probe is first inside the horizon, or has no image. */
-static BhrStatus find_crossing(Chase *chase, double low, double high) {
+/* The proper time at which the probe passes the horizon. */
+static BhrStatus find_crossing(Chase *chase) {
+    double    low = 0.0, high = 1.0;
+    int       outside = 1;
+    BhrBody   body;
     BhrStatus status = BHR_OK;
+    while (status >= 0 && outside && high < LONGEST) {
+        high *= 2.0;
+        status = find_probe(chase, high, &body, &outside);
+    }
     for (int i = 0; status >= 0 && i < HALVINGS; i++) {
-        Sight        sight;
         const double middle = 0.5 * (low + high);
-        status = look_at(chase, middle, &sight);
-        *(sight.arrival < INFINITY ? &low : &high) = middle;
+        status = find_probe(chase, middle, &body, &outside);
+        *(outside ? &low : &high) = middle;
     }
     chase->crossing = low;
     return status;
@@ -86,10 +100,10 @@ static BhrStatus find_seen(const Chase *chase, double arrival, double *out_prope
     return status >= 0 ? look_at(chase, low, sight) : status;
 }
 
-/* How fast the probe's clock is seen to go, by the camera's: nu(camera) / nu(probe) is the same number, as the crests of
- * a wave are ticks of a clock. */
+/* How fast the probe's clock is seen to go, by the camera's: nu(camera) / nu(probe) is the same number, as the crests
+ * of a wave are ticks of a clock. */
 static BhrStatus find_rate(const Chase *chase, double proper_time, double *out) {
-    const double step = fmax(FIRST_STEP, RATE_STEP * (chase->crossing - proper_time));
+    const double step = fmin(LAST_STEP, RATE_STEP * (chase->crossing - proper_time));
     const double begin = fmax(0.0, proper_time - step), end = fmin(chase->crossing, proper_time + step);
     Sight        sights[2];
     BhrStatus    status = look_at(chase, begin, &sights[0]);
@@ -221,20 +235,18 @@ static int make_frames(Chase *chase, const Settings *s, BhrImage *image) {
                 s->distance - s->ahead, chase->horizon);
         return EXIT_FAILURE;
     }
-    double high = 1.0; /* M: doubled until the probe is inside */
-    Sight  last = {.arrival = 0.0};
-    while (status >= 0 && last.arrival < INFINITY && high < 1e5) {
-        high *= 2.0;
-        status = look_at(chase, high, &last);
-    }
     if (status >= 0) {
-        status = find_crossing(chase, 0.0, high);
+        status = find_crossing(chase);
     }
     if (status < 0) {
         return report_failure("follow the probe", status);
     }
-    printf("The probe crosses the horizon, r+ = %.5f M, when its clock shows %.5f M.\n\n", chase->horizon,
-           chase->crossing);
+    if (chase->crossing < 0.5 * LONGEST) {
+        printf("The probe crosses the horizon, r+ = %.5f M, when its clock shows %.5f M.\n\n", chase->horizon,
+               chase->crossing);
+    } else {
+        printf("The probe does not fall in.\n\n");
+    }
     printf("frame     camera      probe           r       rate  is seen\n");
     for (uint32_t frame = 0; frame < s->frames; frame++) {
         char name[24];
