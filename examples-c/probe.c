@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* probe.c -- a probe falls into a spinning hole while a camera at rest looks after it: where the probe is seen, how
- * red, how dim, and how slowly its clock is seen to go. The light that arrives at a time left it at the proper time that
- * solves time + delay = arrival: bhr_world_line says when and where the probe is, bhr_project_point how long its
+ * red, how dim, and how slowly its clock is seen to go. The light that arrives at a time left it at the proper time
+ * that solves time + delay = arrival: bhr_world_line says when and where the probe is, bhr_project_point how long its
  * light takes and where on the screen it comes from. The probe crosses the horizon, but is never seen to. All is told
  * in the chart RAIN, in which its world line goes on inside. Draws direct images, in front of whatever hides them. */
 #include "options.h"
