@@ -124,7 +124,8 @@ static int make(Film *f) {
 int main(int argc, char **argv) {
     Film         f = {.output = "film-out", .frames = AS_SCENE, .size = {AS_SCENE, AS_SCENE}}; /* BACKEND_AUTO is 0 */
     const Option options[] = {
-        {"--scene", OPTION_TEXT, &f.scene, "FILE", "what to play; else fall.toml: a fall into a hole", NULL, NULL},
+        {"--scene", OPTION_TEXT, &f.scene, "FILE", "to play, such as scenes/fall-kerr.toml; else fall.toml, a fall",
+         NULL, NULL},
         {"--output", OPTION_TEXT, &f.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
         {"--video", OPTION_TEXT, &f.video_file, "FILE", "a video instead, by ffmpeg; overwritten", NULL, NULL},
         {"--frames", OPTION_UINT, &f.frames, "N", "over the same time, in place of the scene's", NULL, "1 to 99999"},

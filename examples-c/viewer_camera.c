@@ -27,7 +27,9 @@
 #define FARTHEST 2000.0             /* M */
 #define HIGHEST (89.0 * PI / 180.0) /* elevation: at the poles up has no direction */
 #define SINGULARITY 0.01            /* M: where a fall into a spin-0 hole ends */
-#define ABOVE_HORIZON 1.002         /* of r+: where a fall into a spinning hole ends */
+#define ABOVE_INNER 0.01            /* of r+ - r-, above r-: where a fall into a spinning hole ends */
+#define AT_HORIZON 1.00001          /* of r+: outside it azimuths of both charts are known */
+#define CHART_STEPS 200             /* of the integrals between the charts; even */
 
 /* How a fall is shown. */
 #define SECONDS_PER_E_FOLD 1.5 /* slowed down where it is faster than this */
@@ -190,10 +192,17 @@ static int level(BhrCamera *camera, const double vertical[3], double part) {
 
 static void set_radius(BhrCamera *camera, double radius) { scale(camera->position, radius / length(camera->position)); }
 
+/* r- of a hole, M = 1. */
+static double inner_horizon(double spin) { return spin * spin / (1.0 + sqrt((1.0 - spin) * (1.0 + spin))); }
+
 static double smallest_radius(const Scene *scene, const BhrHoleInfo *info) {
     switch (scene->camera.motion) {
     case BHR_MOTION_FREE_FALL:
-        return scene->spin == 0.0 ? SINGULARITY * scene->mass : ABOVE_HORIZON * info->horizon_radius;
+        if (scene->spin != 0.0) {
+            const double inner = inner_horizon(scene->spin);
+            return scene->mass * (inner + ABOVE_INNER * (2.0 - 2.0 * inner)); /* r+ + r- = 2 M */
+        }
+        return SINGULARITY * scene->mass;
     case BHR_MOTION_ORBIT:
         return NEAREST * info->photon_orbit_prograde;
     default:
@@ -211,6 +220,48 @@ static void keep_outside(Pilot *pilot, Scene *scene, const BhrHoleInfo *info) {
     }
 }
 
+/* ---- charts (docs/cameras.md) ---- */
+
+/* Azimuth and time of the chart RAIN less those of STATIC at a radius outside the horizon, M = 1. With v = r^(-1/2),
+ * u = v^2, D = 1 - 2 u + a^2 u^2 and q = sqrt(1 + a^2 u^2) they are
+ *     -2 sqrt(2) integral of a u / (q D) dv
+ *     2 sqrt(2) / v - 2 sqrt(2) integral of (2 - a^2 u + a^2 u / (1 + q)) / D dv
+ * from 0 to v: by Simpson's rule in s, v = v+ (1 - e^-s), in which the horizon is far away. */
+static void chart_offsets(double spin, double radius, double *azimuth, double *time) {
+    const double a2 = spin * spin, v_horizon = 1.0 / sqrt(2.0 - inner_horizon(spin)), v_end = 1.0 / sqrt(radius);
+    const double step = -log(1.0 - v_end / v_horizon) / CHART_STEPS, root = sqrt(8.0);
+    *azimuth = 0.0;
+    *time = root / v_end;
+    for (int i = 0; i <= CHART_STEPS; i++) {
+        const double left = exp(-i * step), v = v_horizon * (1.0 - left), u = v * v, q = sqrt(1.0 + a2 * u * u);
+        const double weight = (i == 0 || i == CHART_STEPS ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * step / 3.0;
+        const double part = -root * weight * v_horizon * left / (1.0 - 2.0 * u + a2 * u * u);
+        *azimuth += part * spin * u / q;
+        *time += part * (2.0 - a2 * u + a2 * u / (1.0 + q));
+    }
+}
+
+/* Who falls into a spinning hole is told in the chart RAIN, in which nothing winds up at the horizon, and everybody
+ * else in STATIC. Whatever the chart, the picture is the same: the camera turns about the axis, its clock is set. */
+static void choose_chart(Scene *scene) {
+    BhrCamera     *camera = &scene->camera;
+    const int      falls = camera->motion == BHR_MOTION_FREE_FALL && scene->spin != 0.0;
+    const BhrChart chart = falls ? BHR_CHART_RAIN : BHR_CHART_STATIC;
+    const double   radius = length(camera->position) / scene->mass, sign = falls ? 1.0 : -1.0;
+    if (camera->chart == chart) {
+        return;
+    }
+    camera->chart = chart;
+    if (radius > AT_HORIZON * (2.0 - inner_horizon(scene->spin))) { /* inside, spin is 0, and there is no difference */
+        double azimuth, time, axis[3];
+        chart_offsets(scene->spin, radius, &azimuth, &time);
+        memcpy(axis, scene->axis, sizeof axis);
+        scale(axis, 1.0 / length(axis));
+        turn_about_hole(camera, axis, sign * azimuth);
+        scene->time += sign * time * scene->mass;
+    }
+}
+
 /* ---- the observer's own motion ---- */
 
 static BhrStatus stand(Scene *scene, const BhrContext *context, double proper_time) {
@@ -222,8 +273,8 @@ static BhrStatus stand(Scene *scene, const BhrContext *context, double proper_ti
 
 /* The height above the fall's end shrinks by no more than a factor e in SECONDS_PER_E_FOLD: at the horizon and in the
  * last moments proper time is shown in slow motion. The speed of a fall from rest at infinity is sqrt(2 M / r). */
-static double slow_motion(const Scene *scene, const BhrHoleInfo *info, double seconds, double proper_time) {
-    double end = scene->spin == 0.0 ? 0.0 : info->horizon_radius, radius = length(scene->camera.position);
+static double slow_motion(const Scene *scene, double seconds, double proper_time) {
+    double end = scene->mass * inner_horizon(scene->spin), radius = length(scene->camera.position);
     double most = seconds / SECONDS_PER_E_FOLD * (radius - end) * sqrt(radius / (2.0 * scene->mass));
     return fmax(-most, fmin(most, proper_time));
 }
@@ -236,12 +287,12 @@ static BhrStatus fall(Pilot *pilot, Scene *scene, const BhrContext *context, con
     }
     if (radius <= 1.001 * smallest_radius(scene, info) && proper_time > 0.0) {
         printf(scene->spin == 0.0 ? "the singularity is reached; the fall begins again outside\n"
-                                  : "inside a spinning hole no light is traced; the fall begins again outside\n");
+                                  : "the inner horizon is reached; the fall begins again outside\n");
         set_radius(&scene->camera, pilot->fall_begin);
     } else if (radius >= 0.999 * FARTHEST * scene->mass && proper_time < 0.0) {
         return BHR_OK; /* time runs backward, and the fall came from infinity */
     }
-    proper_time = slow_motion(scene, info, seconds, proper_time);
+    proper_time = slow_motion(scene, seconds, proper_time);
     BhrStatus status = bhr_camera_advance(context, &scene->camera, proper_time, &time);
     scene->time += time;
     return status;
@@ -350,6 +401,7 @@ BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, doub
         pilot->fall_begin = 0.0;
     }
     keep_outside(pilot, scene, &info);
+    choose_chart(scene);
     switch (scene->camera.motion) {
     case BHR_MOTION_FREE_FALL:
         status = fall(pilot, scene, context, &info, seconds, proper_time);

@@ -337,7 +337,7 @@ static const Key KEYS[] = {
     {GLFW_KEY_Q, 0, NULL, "fly down", thrust_up, -1, 1},
     {GLFW_KEY_E, 0, NULL, "fly up", thrust_up, 1, 1},
     {GLFW_KEY_LEFT_SHIFT, 0, "Shift", "fly four times as fast", thrust_more, 1, 1},
-    {GLFW_KEY_N, 0, NULL, "move the camera as: static, free fall, orbit", cycle_motion, 0, 0},
+    {GLFW_KEY_N, 0, NULL, "move the camera as: static, free fall (into the hole), orbit", cycle_motion, 0, 0},
 
     {GLFW_KEY_SPACE, 0, "Space", "stop time, and let it go on", toggle_pause, 0, 0},
     {GLFW_KEY_PERIOD, 0, NULL, "let time run twice as fast", change_pace, 2, 0},

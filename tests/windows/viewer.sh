@@ -169,14 +169,15 @@ viewer_flies() {
         { cat -- "$scratch/flight"; return 1; }
 }
 
-# A fall into a hole without spin goes on inside and begins again; one into a spinning hole ends above its horizon.
+# A fall into a hole without spin goes on to the centre and begins again, one into a spinning hole to the inner horizon.
 # Orbits near the hole, in the plane and inclined. Every frame of all that can be rendered.
 viewer_falls_and_orbits() {
     local spin orbit=100
+    local -A end=([0]=singularity [0.9]="inner horizon")
     ! runs_all || orbit=300
     for spin in 0 0.9; do
         viewer_flies --spin "$spin" --motion freefall --distance 4 --frames 900 &&
-            grep 'begins again' "$scratch/flight" || return 1
+            grep "${end[$spin]} is reached; the fall begins again" "$scratch/flight" || return 1
         viewer_flies --spin "$spin" --motion orbit --distance 4 --frames "$orbit" || return 1
     done
 }
