@@ -241,8 +241,8 @@ static void chart_offsets(double spin, double radius, double *azimuth, double *t
     }
 }
 
-/* Who falls into a spinning hole is told in the chart RAIN, in which nothing winds up at the horizon, and everybody
- * else in STATIC. Whatever the chart, the picture is the same: the camera turns about the axis, its clock is set. */
+/* An observer who falls into a spinning hole is told in the chart RAIN, in which nothing winds up at the horizon, all
+ * others in STATIC. Whatever the chart, the picture is the same: the camera turns about the axis, its clock is set. */
 static void choose_chart(Scene *scene) {
     BhrCamera     *camera = &scene->camera;
     const int      falls = camera->motion == BHR_MOTION_FREE_FALL && scene->spin != 0.0;

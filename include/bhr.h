@@ -534,14 +534,14 @@ BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *cam
 BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /** Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
- * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, and a VELOCITY one falls freely from its velocity,
- * which changes. BhrCamera.transport says how axes are carried along. The context's own camera stays where it is,
- * and on failure so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that
- * went by: add it to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in
- * STATIC too (docs/cameras.md).
+ * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, a VELOCITY one falls freely, which changes its
+ * velocity. BhrCamera.transport says how axes go along. The context's own camera stays where it is, and on failure
+ * so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that went by: add it
+ * to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in STATIC too
+ * (docs/cameras.md).
  * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
- * ends before: in the centre, at r- (1 + 1e-6), or in chart STATIC at the horizon; UNSUPPORTED for a STATIC camera
- * with PARALLEL axes, and for more than 300,000 steps (some 10^5 M at r = 10 M). */
+ * ends before: in the centre, at r- (1 + 1e-6), or in STATIC at the horizon; UNSUPPORTED for a STATIC camera with
+ * PARALLEL axes, and for more than 300,000 steps. */
 BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context, BhrCamera *camera, double proper_time,
                                            double *out_coordinate_time);
 

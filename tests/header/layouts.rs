@@ -119,11 +119,11 @@ fn layouts_hold_in_rust() {
         hole::BhrHoleInfo {
             struct_size, reserved, horizon_radius, ergosphere_equatorial_radius, photon_orbit_prograde,
             photon_orbit_retrograde, isco_prograde, isco_retrograde, critical_impact_parameter, shadow_angular_radius,
-            camera_radius, camera_time_rate
+            camera_radius, camera_time_rate, inner_horizon_radius
         }
         camera::BhrCamera {
             struct_size, projection, position, forward, up, fov_y, motion, reserved, velocity, tan_left, tan_right,
-            tan_down, tan_up, jitter, eye_distance, eye, reserved2
+            tan_down, tan_up, jitter, eye_distance, eye, reserved2, chart, transport
         }
         disk::BhrDisk {
             struct_size, flags, inner_radius, outer_radius, temperature, opacity, brightness, turbulence, seed,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
 //! in f32. Three kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell
-//! them from it, those that wind about the hole, along which the rounding of f32 grows too large, and those in the chart
-//! RAIN.
+//! them from it, those that wind about the hole, along which the rounding of f32 grows too large, and those in the
+//! chart RAIN.
 
 use super::tracer::GpuTracer;
 use crate::allocate::{collected, with_room};

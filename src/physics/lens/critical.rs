@@ -68,9 +68,9 @@ pub fn capture_margin(c: &Constants) -> f64 {
 #[repr(u32)]
 pub enum ByMargin {
     None = 0,
-    /// Those that move inwards: observers outside the photon region.
+    /// Rays that move inwards: observers outside the photon region.
     Inward = 1,
-    /// All: observers within it, inside the horizon too, from where rays that move outwards may turn back.
+    /// All rays: observers within it, inside the horizon too, from where rays that move outwards may turn back.
     All = 2,
 }
 
