@@ -492,12 +492,12 @@ impl Observer {
     /// their axes: n in the axes of `self` is turn * n in those of the result, both boosted without rotation.
     ///
     /// Two boosts make a boost and a turn (Thomas 1926; Wigner 1939). With spinors, exp(eta / 2 v.sigma), and T = gamma
-    /// beta / (gamma + 1), which is tanh(eta / 2) v: half the angle of the turn has the tangent |T1 x T2| / (1 +
-    /// T1.T2).
+    /// beta / (gamma + 1), which is tanh(eta / 2) v: half the angle of the turn, about T2 x T1, has the tangent
+    /// |T2 x T1| / (1 + T1.T2).
     pub fn carried_by(&self, carrier: &Self) -> (Self, DMat3) {
         let half = |observer: &Self| observer.beta * (observer.gamma / (observer.gamma + 1.0));
         let (first, second) = (half(carrier), half(self));
-        let axis = first.cross(second) / (1.0 + first.dot(second));
+        let axis = second.cross(first) / (1.0 + first.dot(second));
         let turn = match axis.length() {
             0.0 => DMat3::IDENTITY,
             tangent => DMat3::from_axis_angle(axis / tangent, 2.0 * tangent.atan()),

@@ -5,6 +5,7 @@ use super::host_rays::trace_ray;
 use super::{Camera, Chart, Disk, Fate, Motion, Projection, Ray, Region, Scene, Transport};
 use crate::physics::geodesic::{RAIN_CLOCK_RADIUS, turned};
 use crate::physics::metric::chart;
+use crate::physics::observer::{LocalFrame, Observer};
 use crate::physics::orbit::{horizon_inner, horizon_outer};
 use crate::physics::rain::offsets;
 use crate::physics::trace::{self, RayTrace, trace_look};
@@ -113,6 +114,44 @@ fn rays_of_rain_cameras_are_those_of_tracers() {
     }
     println!("{skies} skies {:.1e}, g {:.1e}; {crossings} crossings {:.1e}", worst[0], worst[1], worst[2]);
     assert!(skies > 300 && crossings > 200 && worst[0] < 1e-9 && worst[1] < 1e-11, "{skies} {crossings} {worst:?}");
+}
+
+/// Boosts made one after the other are the boost and the turn that `carried_by` says.
+#[test]
+fn boosts_add_up_to_a_boost_and_a_turn() {
+    let mut random = Random(400);
+    let mut vector = |length: f64| chart(length, 3.1 * random.next(), 6.2 * random.next());
+    let place = LocalFrame::rain(0.9, DVec3::new(4.0, 3.0, 2.0)).unwrap();
+    for (fast, slow) in [(0.5, 0.3), (0.9, 0.8), (0.999, 0.7), (0.2, 0.999)] {
+        let carrier = Observer::moving(place.to_static(), vector(fast));
+        let own = Observer::moving(place, vector(slow));
+        let (sum, turn) = own.carried_by(&carrier);
+        for _ in 0..20 {
+            let n = vector(1.0);
+            let (there, first) = own.aberrate(n);
+            let (expected, second) = carrier.aberrate(there);
+            let (found, ratio) = sum.aberrate(turn * n);
+            let off = (found - expected).length();
+            assert!(off < 1e-10 && (ratio / (first * second) - 1.0).abs() < 1e-10, "{fast} {slow}: {off:e}");
+        }
+    }
+}
+
+/// A camera of any velocity sees at r = 3 M, where tracers change charts, on both sides the same.
+#[test]
+fn moving_cameras_do_not_turn_where_tracers_change_charts() {
+    for spin in [0.9, -0.6, 0.0] {
+        let seen = [1e-9, -1e-9].map(|step| {
+            let mut scene = scene(spin, Camera::plain());
+            scene.camera = camera(&scene, Chart::Rain, Motion::Velocity, [RAIN_CLOCK_RADIUS + step, 1.2, 0.7]);
+            [(3.0, 5.0), (60.0, 11.0), (20.0, 40.0), (33.0, 2.0)].map(|(x, y)| traced(&scene, x, y))
+        });
+        for ((a, g), (b, h)) in seen[0].iter().zip(&seen[1]) {
+            assert_eq!(a.fate, b.fate);
+            assert!((a.direction - b.direction).length() < 1e-6, "{spin}: {a:?} {b:?}");
+            assert!(a.fate != trace::Fate::Escaped || (g / h - 1.0).abs() < 1e-7, "{spin}: {g} {h}");
+        }
+    }
 }
 
 /// Far and near, a camera in the one chart sees what the camera in the other at the same place sees.

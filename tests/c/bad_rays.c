@@ -215,14 +215,14 @@ static void camera_advance(Watch *watch, BhrContext *context) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "proper_time",
                       bhr_camera_advance(context, &camera, NOT_FINITE[i], &time));
     }
-    camera.motion = BHR_MOTION_VELOCITY;
-    before.motion = BHR_MOTION_VELOCITY;
-    CHECK_REFUSED(watch, BHR_ERROR_UNSUPPORTED, "VELOCITY|velocity", bhr_camera_advance(context, &camera, 1.0, &time));
+    camera.motion = before.motion = BHR_MOTION_STATIC;
+    camera.transport = before.transport = BHR_TRANSPORT_PARALLEL;
+    CHECK_REFUSED(watch, BHR_ERROR_UNSUPPORTED, "PARALLEL", bhr_camera_advance(context, &camera, 1.0, &time));
     CHECK(memcmp(&camera, &before, sizeof camera) == 0, "a failed advance moved the camera");
     camera.up[1] = NAN;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "up", bhr_camera_advance(context, &camera, 1.0, NULL));
     camera = before;
-    camera.motion = BHR_MOTION_STATIC;
+    camera.transport = BHR_TRANSPORT_TRIAD;
     CHECK_OK(bhr_camera_advance(context, &camera, 1.0, NULL)); /* out_coordinate_time may be NULL */
 }
 

@@ -21,7 +21,7 @@ static void mass(Watch *watch, BhrContext *context) {
 }
 
 static void spin(Watch *watch, BhrContext *context) {
-    static const double bad[] = {0.99900001, -0.99900001, 1.0, -1.0, 5.0, NAN, INFINITY, -INFINITY};
+    static const double bad[] = {0.99990001, -0.99990001, 1.0, -1.0, 5.0, NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spin", bhr_set_spin(context, bad[i]));
     }

@@ -179,7 +179,7 @@ static void messages_are_plain(BhrBackend backend) {
     BhrSurface       *surface = NULL;
     BhrCamera         camera;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "spin is 1.33333333;", bhr_set_spin(context, 4.0 / 3.0));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "spin is 0.99900000000001;", bhr_set_spin(context, 0.99900000000001));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "spin is 0.99990000000001;", bhr_set_spin(context, 0.99990000000001));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "mass is -1e308;", bhr_set_mass(context, -1e308));
     CHECK_OK(bhr_camera_init(&camera, sizeof camera));
     camera.fov_y = 60.0;
