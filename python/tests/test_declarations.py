@@ -31,6 +31,7 @@ ENUMS = {
     "BHR_FORMAT_": bhr.Format,
     "BHR_SKY_": bhr.SkyFlags,
     "BHR_TONE_MAP_": bhr.ToneMap,
+    "BHR_TRANSPORT_": bhr.Transport,
     "BHR_COLOUR_MAP_": bhr.ColourMap,
     "BHR_EFFECT_": bhr.Effects,
     "BHR_PRESET_": bhr.Preset,

@@ -218,7 +218,7 @@ def test_inside_a_spinning_hole(any_ctx):
     ctx.spin = 0.9
     camera = bhr.Camera.orbit(1.6, 0.0, 0.3, motion=bhr.Motion.FREE_FALL, chart=bhr.Chart.RAIN)
     ctx.camera, elapsed = ctx.advance(camera, 0.2)
-    info = ctx.hole_info()
+    info = ctx.hole_info
     assert info.inner_horizon_radius < info.camera_radius < info.horizon_radius
     assert abs(elapsed - 0.2) < 1e-12 and info.camera_time_rate == 1.0
     image = ctx.render(32, 18)

@@ -24,7 +24,8 @@ fn curve_level_within(n: vec3<f32>) -> f32 {
     let u = potential_minimum(c);
     let root = sqrt(max(u * u * (c.k - c.a2e2 - u * (2.0 * c.b - u * c.a2q)), 0.0)) / abs(c.energy);
     let inward = begin.state.du > 0.0;
-    let before = begin.state.u < u;
+    // Where P falls all the way to the horizon, its least value there tells rays on both sides of it.
+    let before = begin.state.u < u && (inward || u * c.r_plus < 1.0 - 1e-6);
     let level = select(select(1.0 - root, 1.0, before), select(-1.0, root - 1.0, before), inward);
     return select(-1.0, level, begin.has_light && c.energy > 0.0);
 }

@@ -48,7 +48,7 @@ pub const BHR_OUTPUT_TRANSMISSION: BhrOutputKind = 3;
 /// are NaN, and the fourth is -1 where the ray escapes, -2 where it is captured, NaN where it is unresolved.
 pub const BHR_OUTPUT_POSITION: BhrOutputKind = 4;
 /// RGBA32F: radius, azimuth, redshift and delay of crossing number index, as in BhrCrossing; NaN without that
-/// crossing. The delay is NaN for cameras at or inside the photon sphere that fall.
+/// crossing. The delay is NaN for cameras in chart STATIC at or inside the photon sphere that fall.
 pub const BHR_OUTPUT_DISK: BhrOutputKind = 5;
 /// R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. Views but REDSHIFT, ORDER and DEFLECTION
 /// take as long as a frame of their own.

@@ -42,7 +42,8 @@ pub struct BhrProjectedPoint {
     /// How much larger, in solid angle, something small at the point looks to the camera than without the hole, the
     /// camera's motion included; negative where the image is mirrored. It grows without limit near a caustic.
     pub magnification: f64,
-    /// Coordinate time since the light left the point, scene lengths; NaN from inside the horizon.
+    /// Coordinate time (in chart RAIN rain time) since the light left the point, scene lengths; NaN from inside the
+    /// horizon in chart STATIC.
     pub delay: f64,
     /// g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO).
     pub redshift: f64,

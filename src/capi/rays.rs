@@ -361,7 +361,8 @@ pub unsafe extern "C" fn bhr_trace_rays(
 /// capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
 /// escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
 /// they ran out. The curve is traced in double precision on the CPU, whatever the backend.
-/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon.
+/// Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon
+/// in chart STATIC.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

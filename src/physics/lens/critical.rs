@@ -63,6 +63,9 @@ pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
 }
 
+/// The part of 1/r+ within which the least potential is at the horizon.
+const AT_HORIZON: f64 = 1e-6;
+
 /// The rays whose level is that of their capture margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -103,7 +106,9 @@ impl CurveLevel {
         let Some((c, s)) = self.frame.start(n).filter(|(c, _)| c.energy > 0.0) else { return -1.0 };
         let u = potential_minimum(&c);
         let root = (1.0 - radial_potential(&c, u) / (c.energy * c.energy)).max(0.0).sqrt();
-        match (s.du > 0.0, s.u < u) {
+        // Where P falls all the way to the horizon, its least value there tells rays on both sides of it.
+        let is_before = s.u < u && u * c.r_plus < 1.0 - AT_HORIZON;
+        match (s.du > 0.0, if s.du > 0.0 { s.u < u } else { is_before }) {
             (true, true) => root - 1.0,
             (true, false) => -1.0,
             (false, true) => 1.0,
