@@ -59,8 +59,9 @@
  *   spherical coordinates there (on the axis e_th = x, e_ph = y). Its components are those along the orthonormal frame
  *   of the local static observer (the ZAMO when the hole spins). A direction may have any non-zero length, and is
  *   normalised; a velocity is taken as it is. A moving camera's axes are that frame boosted without rotation. Inside a
- *   spin-0 horizon the frame is that of the observer falling from rest at infinity. Inside a spinning hole's horizon
- *   there is none: a camera there is BHR_ERROR_UNSUPPORTED, a ray from there BHR_FATE_INVALID.
+ *   spin-0 horizon, and everywhere in BHR_CHART_RAIN, the frame is that of the observer falling from rest at infinity.
+ *   In BHR_CHART_STATIC there is none inside a spinning hole's horizon: a camera there is BHR_ERROR_UNSUPPORTED, a ray
+ *   from there BHR_FATE_INVALID.
  *
  * Errors
  *   Every call that can fail returns a BhrStatus; bhr_error_message tells the thread that called what was wrong, with
@@ -1244,8 +1245,8 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
  * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times as
- * wide as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED
- * by the progress callback. */
+ * wide as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon
+ * in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /** Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -1325,7 +1326,7 @@ typedef int32_t BhrOutputKind;
 #define BHR_OUTPUT_POSITION 4
 
 /** RGBA32F: radius, azimuth, redshift and delay of crossing number index, as in BhrCrossing; NaN without that
- * crossing. The delay is NaN for cameras at or inside the photon sphere that fall. */
+ * crossing. The delay is NaN for cameras in chart STATIC at or inside the photon sphere that fall. */
 #define BHR_OUTPUT_DISK 5
 
 /** R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. Views but REDSHIFT, ORDER and DEFLECTION
@@ -1513,7 +1514,8 @@ BHR_NODISCARD BhrStatus bhr_trace_rays(BhrContext *context, const BhrRay *rays, 
  * capacity, never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that
  * escapes, at ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where
  * they ran out. The curve is traced in double precision on the CPU, whatever the backend.
- * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon. */
+ * Errors: INVALID_ARGUMENT for capacity < 2, or a ray that is not valid, as from inside a spinning hole's horizon
+ * in chart STATIC. */
 BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context, const BhrRay *ray, uint32_t capacity, double *out_points,
                                        uint32_t *out_count);
 
@@ -1538,7 +1540,9 @@ typedef struct BhrProjectedPoint {
     /** How much larger, in solid angle, something small at the point looks to the camera than without the hole, the
      * camera's motion included; negative where the image is mirrored. It grows without limit near a caustic. */
     double magnification;
-    double delay;    /**< Coordinate time since the light left the point, scene lengths; NaN from inside the horizon. */
+    /** Coordinate time (in chart RAIN rain time) since the light left the point, scene lengths; NaN from inside the
+     * horizon in chart STATIC. */
+    double delay;
     double redshift; /**< g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO). */
     /** The straight distance from the camera to the point, scene lengths: its depth for BHR_OUTPUT_DEPTH and
      * bhr_set_occluder. */

@@ -343,7 +343,8 @@ class ProjectedPoint(Struct):
     #: How much larger, in solid angle, something small at the point looks to the camera than without the hole, the
     #: camera's motion included; negative where the image is mirrored. It grows without limit near a caustic.
     magnification: float
-    #: Coordinate time since the light left the point, scene lengths; NaN from inside the horizon.
+    #: Coordinate time (in chart RAIN rain time) since the light left the point, scene lengths; NaN from inside the
+    #: horizon in chart STATIC.
     delay: float
     #: g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO).
     redshift: float
