@@ -996,8 +996,8 @@ BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 /** Reads the effects as they are set. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
-/** Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the chart's t at the
- * camera, or, for a camera at or inside a spin-0 horizon, where t ends, rain (Painleve-Gullstrand) time.
+/** Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the time of the camera's
+ * chart at the camera: t, or in chart RAIN, and in STATIC for a camera at or inside a spin-0 horizon, rain time.
  * bhr_camera_advance tells how both go by (docs/cameras.md). */
 BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 

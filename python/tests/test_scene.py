@@ -221,8 +221,8 @@ def test_inside_a_spinning_hole(any_ctx):
     info = ctx.hole_info
     assert info.inner_horizon_radius < info.camera_radius < info.horizon_radius
     assert abs(elapsed - 0.2) < 1e-12 and info.camera_time_rate == 1.0
-    image = ctx.render(32, 18)
-    assert image.shape == (18, 32, 4)
+    light = ctx.render(32, 18, format=bhr.Format.RGBA32F).array
+    assert light.shape == (18, 32, 4) and np.isfinite(light).all() and light[:, :, :3].max() > 0.0
     with pytest.raises(bhr.Error, match="inner horizon"):
         ctx.advance(camera, 9.0)
 

@@ -85,8 +85,11 @@ fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     return turned;
 }
 
-// Below this E, rays of the rain frame of a spinning hole keep nu_local = 1: f32 would not hold their constants.
-const SMALLEST_RAIN_ENERGY: f32 = 0.02;
+// Lens::closest_approach_towards.
+fn closest_approach(n: vec3<f32>) -> f32 {
+    let speed = frame.eye.w;
+    return max((speed - n.x) / (1.0 - speed * n.x), 0.0) / frame.observer_u;
+}
 
 fn begin_ray(look: vec3<f32>) -> RayBegin {
     let seen = aberrate(look);
@@ -161,6 +164,9 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = energy > 0.0;
 }
+
+// Below this E, rays of the rain frame of a spinning hole keep nu_local = 1: f32 would not hold their constants.
+const SMALLEST_RAIN_ENERGY: f32 = 0.02;
 
 // With spin: start_rain, rain_triad and doran_momentum of observer.rs.
 fn begin_spinning_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {

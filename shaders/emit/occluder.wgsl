@@ -24,8 +24,7 @@ fn set_occluder(place: vec2<f32>) {
     let size = vec2<i32>(textureDimensions(occluder));
     let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder_origin), vec2<i32>(0), size - 1);
     occluder_farthest = textureLoad(occluder, texel, 0).x / frame.hole_mass;
-    let n = aberrate(look_direction(place.x, place.y)).n;
-    let closest = max(-n.x, 0.0) / frame.observer_u;
+    let closest = closest_approach(aberrate(look_direction(place.x, place.y)).n);
     occluder_ends = occluder_farthest < select(closest, NO_THING, frame.occluder_lensed > 0.0);
     occluder_passed = false;
 }

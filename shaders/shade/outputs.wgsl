@@ -54,11 +54,10 @@ fn without_crossing(fate: u32) -> u32 {
 // The bits of the distance to what the ray meets first.
 fn depth_of(fate: u32, first: Crossing, n: vec3<f32>) -> u32 {
     let mass = outputs.scene_x.w;
-    let r = 1.0 / frame.observer_u;
     if first.u > 0.0 && first.order == 0u {
         return bitcast<u32>(mass * crossing_distance(first));
     }
-    return select(bitcast<u32>(mass * r * max(-n.x, 0.0)), INFINITE, first.u <= 0.0 && fate == FATE_ESCAPED);
+    return select(bitcast<u32>(mass * closest_approach(n)), INFINITE, first.u <= 0.0 && fate == FATE_ESCAPED);
 }
 
 fn crossing_output(kind: u32, crossing: Crossing) -> vec4<u32> {

@@ -122,7 +122,7 @@ struct Frame {
     static_lapse: f32,
     placed_phi: vec3<f32>,
     static_angular_velocity: f32,
-    // The observer's place as hosts have it, M.
+    // The observer's place as hosts have it, M, and Lens::place_speed.
     eye: vec4<f32>,
     // RainTriad of src/physics/observer.rs: sin_turn, cos_turn, rho, circumference.
     rain_triad: vec4<f32>,

@@ -54,8 +54,8 @@ pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects
     }
 }
 
-/// Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the chart's t at the
-/// camera, or, for a camera at or inside a spin-0 horizon, where t ends, rain (Painleve-Gullstrand) time.
+/// Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the time of the camera's
+/// chart at the camera: t, or in chart RAIN, and in STATIC for a camera at or inside a spin-0 horizon, rain time.
 /// bhr_camera_advance tells how both go by (docs/cameras.md).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> BhrStatus {

@@ -113,14 +113,15 @@ impl OffsetSeries {
             ((value - at_outer) * (r_plus / (1.0 - r_plus * u)) - (value - at_inner) * (r_minus / (1.0 - r_minus * u)))
                 / apart
         };
+        let node = |i: usize| (i as f64 + 0.5) * PI / OFFSET_TERMS as f64;
+        let at_nodes: [DVec2; OFFSET_TERMS] = std::array::from_fn(|i| {
+            let v = 0.5 * (1.0 + node(i).cos()) / roots[0];
+            rest(v * v)
+        });
         // The interpolant of P' at the Chebyshev nodes, integrated term by term: T_k gives T_(k+1) / (2 k + 2) and
         // -T_(k-1) / (2 k - 2).
         let slopes: [DVec2; OFFSET_TERMS] = std::array::from_fn(|k| {
-            let node = |i: usize| (i as f64 + 0.5) * PI / OFFSET_TERMS as f64;
-            let sum = (0..OFFSET_TERMS).fold(DVec2::ZERO, |sum, i| {
-                let v = 0.5 * (1.0 + node(i).cos()) / roots[0];
-                sum + rest(v * v) * (k as f64 * node(i)).cos()
-            });
+            let sum = (0..OFFSET_TERMS).fold(DVec2::ZERO, |sum, i| sum + at_nodes[i] * (k as f64 * node(i)).cos());
             sum * (2.0 / OFFSET_TERMS as f64)
         });
         let slope = |k: usize| slopes.get(k).copied().unwrap_or_default();

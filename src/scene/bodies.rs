@@ -12,7 +12,7 @@ use glam::DVec3;
 pub use crate::physics::world_line::End as WorldLineEnd;
 
 /// The greatest speed that a body is told with: one that a host gives again is below 1 then, however it is rounded.
-const FASTEST: f64 = 1.0 - 4.0 * f64::EPSILON;
+pub(super) const FASTEST: f64 = 1.0 - 4.0 * f64::EPSILON;
 
 /// A body at an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

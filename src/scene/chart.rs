@@ -17,14 +17,6 @@ pub enum Chart {
 }
 
 impl Chart {
-    /// The name in `BHR_CHART_*`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Static => "STATIC",
-            Self::Rain => "RAIN",
-        }
-    }
-
     /// The chart of `physics`.
     pub fn clock(self) -> Clock {
         match self {

@@ -85,7 +85,7 @@ impl Scene {
             Chart::Static => self.observer_in_static_chart(camera, self.local_frame(camera.position)?)?,
             Chart::Rain => return self.viewpoint_in_rain_chart(camera),
         };
-        Ok(Viewpoint { observer, place: observer.frame, turn: DMat3::IDENTITY })
+        Ok(Viewpoint { observer, place: observer.frame, turn: DMat3::IDENTITY, place_speed: 0.0 })
     }
 
     /// Where light that escapes may come from farther in, rays are traced in the chart of Boyer and Lindquist, which
@@ -99,7 +99,7 @@ impl Scene {
         };
         if place.a == 0.0 || place.r <= RAIN_CLOCK_RADIUS {
             let observer = Observer::moving(place.with_offset_series(), beta);
-            return Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY });
+            return Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY, place_speed: 0.0 });
         }
         Ok(restated(&Observer::moving(place, beta)))
     }
@@ -128,7 +128,7 @@ impl Scene {
             return Err(no_motion(camera.motion, &place));
         }
         let observer = self.observer_in_static_chart(camera, place.to_static())?;
-        Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY })
+        Ok(Viewpoint { observer, place, turn: DMat3::IDENTITY, place_speed: 0.0 })
     }
 
     /// The camera's observer at a place of the chart of Boyer and Lindquist.
@@ -169,7 +169,7 @@ impl Scene {
 
     /// [`Self::lens`] at a viewpoint of the camera's.
     pub(super) fn lens_at(&self, viewpoint: &Viewpoint, region: &Region) -> Result<Lens> {
-        let Viewpoint { observer, place, turn } = *viewpoint;
+        let Viewpoint { observer, place, turn, place_speed } = *viewpoint;
         let mapping = Mapping::new(&self.camera, region)?;
         let axes = self.hole.scene_to_chart() * self.camera.axes()?;
         let [right, up, forward] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| turn * place.components(axis));
@@ -180,7 +180,7 @@ impl Scene {
             (Chart::Static, Clock::Rain) => f64::NAN,
             (chart, _) => -clock_advance(&observer.frame, chart),
         };
-        Ok(Lens { observer, axes, mapping, place, turn, delay_offset })
+        Ok(Lens { observer, axes, mapping, place, turn, place_speed, delay_offset })
     }
 }
 
@@ -198,8 +198,9 @@ fn no_motion(motion: Motion, place: &LocalFrame) -> Error {
 /// The viewpoint of an observer of the rain frame, outside the horizon, in the chart of Boyer and Lindquist.
 fn restated(observer: &Observer) -> Viewpoint {
     let place = observer.frame;
-    let (observer, turn) = observer.carried_by(&Observer::rain_against(place.to_static()));
-    Viewpoint { observer, place, turn }
+    let rain = Observer::rain_against(place.to_static());
+    let (observer, turn) = observer.carried_by(&rain);
+    Viewpoint { observer, place, turn, place_speed: rain.beta.length() }
 }
 
 /// An observer as tracers have it, and its place as the host tells it.
@@ -211,6 +212,9 @@ pub struct Viewpoint {
     /// Takes directions along the axes of the camera's own observer, who moves against `place`, to those along the axes
     /// of `observer`.
     pub turn: DMat3,
+    /// The speed inwards of the observer of `place` against the local frame of `observer`, where the camera's
+    /// directions are those of the one and tracers have the other; else 0.
+    pub place_speed: f64,
 }
 
 /// The lens before an observer.
@@ -221,9 +225,10 @@ pub struct Lens {
     /// observer's frame.
     pub axes: DMat3,
     pub mapping: Mapping,
-    /// Both from `Viewpoint`.
+    /// These three from `Viewpoint`.
     pub place: LocalFrame,
     pub turn: DMat3,
+    pub place_speed: f64,
     /// The delays of the camera's chart less those of records, M; NaN where the chart has none.
     pub delay_offset: f64,
 }
@@ -249,8 +254,14 @@ impl Lens {
     /// The distance, M, along the line of sight through (x, y), straight as on the chart, to its point nearest to the
     /// hole; 0 where that lies behind the observer.
     pub fn closest_approach(&self, x: f64, y: f64) -> f64 {
-        let (n, _) = self.observer.aberrate(self.look_direction(x, y));
-        self.observer.frame.r * (-n.x).max(0.0)
+        self.closest_approach_towards(self.observer.aberrate(self.look_direction(x, y)).0)
+    }
+
+    /// [`Self::closest_approach`] in the look direction `n` of the observer's local frame: along what the observer of
+    /// `place` sees there.
+    pub fn closest_approach_towards(&self, n: DVec3) -> f64 {
+        let speed = self.place_speed;
+        self.place.r * ((speed - n.x) / (1.0 - speed * n.x)).max(0.0)
     }
 
     /// The position of the full frame at which a look direction (components in the observer's own frame) is seen;

@@ -8,9 +8,9 @@ use super::query::{PixelRays, image_region};
 use super::spread::Spread;
 use super::{Ray, Region, Scene};
 use crate::error::{Error, Number, Result};
-use crate::physics::geodesic::{rain_offset, turned};
+use crate::physics::geodesic::turned;
 use crate::physics::images::{Image, NoImage, image};
-use crate::physics::observer::Observer;
+use crate::physics::observer::{LocalFrame, Observer};
 use crate::physics::orbit::horizon_outer;
 use crate::physics::rain::offsets;
 use glam::{DVec2, DVec3};
@@ -89,12 +89,12 @@ impl Projector<'_> {
         if there.length() <= horizon_outer(spin) {
             return Ok(Projected::Nowhere);
         }
-        scene.local_frame(point)?;
+        let at_point = scene.local_frame(point)?;
         if scene.camera.chart == Chart::Rain && spin != 0.0 {
             there = turned(there, -offsets(spin, 1.0 / there.length()).azimuth);
         }
         Ok(match image(&self.pixel_rays.aberration.frame, there, self.order) {
-            Ok(image) => Projected::At(self.seen(&image, point)),
+            Ok(image) => Projected::At(self.seen(&image, point, &at_point)),
             Err(NoImage::None) => Projected::Nowhere,
             Err(NoImage::Lost) => Projected::Lost,
         })
@@ -106,7 +106,7 @@ impl Projector<'_> {
     }
 
     /// An image in the host's terms.
-    fn seen(&self, image: &Image, point: DVec3) -> ProjectedPoint {
+    fn seen(&self, image: &Image, point: DVec3, at_point: &LocalFrame) -> ProjectedPoint {
         let (scene, observer, lens) = (self.scene, &self.pixel_rays.aberration, &self.pixel_rays.lens);
         let [begin_x, begin_y] = [self.region.x, self.region.y].map(f64::from);
         // Back from the local frame to the camera's own, whose axes are not turned by the boost.
@@ -124,7 +124,7 @@ impl Projector<'_> {
             Chart::Rain => {
                 // Up to the clock of the observer's delays, from rain time at the point.
                 let advance = clock_advance(&observer.frame, Chart::Rain);
-                retardation - advance - time_offset(scene.hole.spin, image.there.u)
+                retardation - advance - at_point.rain_time_offset()
             }
         };
         let distance = point.distance(scene.camera.position);
@@ -140,11 +140,6 @@ impl Projector<'_> {
             apparent: scene.camera.position + to_scene * lens.placed(look) * distance,
         }
     }
-}
-
-/// Rain time less t at 1/r = `u`, outside the horizon.
-fn time_offset(spin: f64, u: f64) -> f64 {
-    if spin == 0.0 { rain_offset(u, 1.0 - 2.0 * u) } else { offsets(spin, u).time }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Questions a host asks of a scene that need no tracer: numbers about the hole, camera rays, the camera's world line.
 
+use super::bodies::FASTEST;
 use super::chart::Chart;
 use super::frame::Region;
 use super::observer::Lens;
@@ -251,7 +252,7 @@ impl Scene {
                 let [forward, up] = self.axes_of(&there, if parallel { &event.axes } else { &axes });
                 let to_scene = self.hole.scene_to_chart().transpose();
                 let velocity = match camera.motion {
-                    Motion::Velocity => to_scene * there.vector(event.body.velocity),
+                    Motion::Velocity => (to_scene * there.vector(event.body.velocity)).clamp_length_max(FASTEST),
                     _ => camera.velocity,
                 };
                 let position = to_scene * event.body.position * self.hole.mass;

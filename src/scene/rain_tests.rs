@@ -144,10 +144,13 @@ fn moving_cameras_do_not_turn_where_tracers_change_charts() {
         let seen = [1e-9, -1e-9].map(|step| {
             let mut scene = scene(spin, Camera::plain());
             scene.camera = camera(&scene, Chart::Rain, Motion::Velocity, [RAIN_CLOCK_RADIUS + step, 1.2, 0.7]);
-            [(3.0, 5.0), (60.0, 11.0), (20.0, 40.0), (33.0, 2.0)].map(|(x, y)| traced(&scene, x, y))
+            let lens = scene.lens(&REGION).unwrap();
+            [(3.0, 5.0), (60.0, 11.0), (20.0, 40.0), (33.0, 2.0)]
+                .map(|(x, y)| (traced(&scene, x, y), lens.closest_approach(x, y)))
         });
-        for ((a, g), (b, h)) in seen[0].iter().zip(&seen[1]) {
+        for (((a, g), near), ((b, h), other)) in seen[0].iter().zip(&seen[1]) {
             assert_eq!(a.fate, b.fate);
+            assert!((near - other).abs() < 1e-7, "{spin}: {near} {other}");
             assert!((a.direction - b.direction).length() < 1e-6, "{spin}: {a:?} {b:?}");
             assert!(a.fate != trace::Fate::Escaped || (g / h - 1.0).abs() < 1e-7, "{spin}: {g} {h}");
         }

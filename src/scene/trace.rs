@@ -162,6 +162,7 @@ impl Scene {
         let frame = self.frame_of_rays(ray.position).ok()?;
         let n = look_components(self, &frame, ray.direction)?;
         let mut start = frame.start(n);
+        // Without spin far observers' rays would be told by t.
         if let (Chart::Rain, Some((constants, _))) = (self.camera.chart, &mut start) {
             constants.clock = Clock::Rain;
         }

@@ -192,6 +192,21 @@ pub fn group() -> Group {
         .with(&plain),
         twin(
             observer,
+            "closest_approach",
+            "enter_scene(); out1(closest_approach(normalize(in3(1u))));",
+            |i| {
+                let view = Kind::Spinning.push(i);
+                push_look(i, view);
+            },
+            |i, o| {
+                let lens = &view(i).lens;
+                o.near(lens.closest_approach_towards(i.v3(1).normalize()), lens.place.r);
+            },
+            UNIFORM,
+        )
+        .with(&spinning),
+        twin(
+            observer,
             "begin_ray",
             "enter_scene(); let b = begin_ray(in3(1u)); out1(b.frequency_ratio); out1(b.c.energy / b.c.nu_local);",
             moving_look,

@@ -84,7 +84,11 @@ fn made(kind: Kind, number: u32) -> View {
     let (mut r, mut theta) = (random.log(4.5, 200.0), random.even(0.1, PI - 0.1));
     scene.camera.motion = [Motion::Static, Motion::Velocity, Motion::FreeFall][number as usize % 3];
     match kind {
-        Kind::Spinning => scene.hole.spin = random.even(-0.998, 0.998),
+        Kind::Spinning => {
+            scene.hole.spin = random.even(-0.998, 0.998);
+            // Far from the hole tracers have these in the other chart.
+            scene.camera.chart = if number % 4 == 2 { Chart::Rain } else { Chart::Static };
+        }
         Kind::Static => scene.camera.motion = [Motion::Static, Motion::Velocity, Motion::Orbit][number as usize % 3],
         Kind::Rain => {
             scene.camera.motion = Motion::FreeFall;

@@ -313,7 +313,7 @@ impl FrameUniform {
             static_lapse: static_observer.map_or(0.0, |observer| observer.lapse) as f32,
             placed_phi: lens.placed(DVec3::Z).as_vec3(),
             static_angular_velocity: static_observer.map_or(0.0, |observer| observer.angular_velocity) as f32,
-            eye: padded(lens.place.e_r * lens.place.r),
+            eye: (lens.place.e_r * lens.place.r).as_vec3().extend(lens.place_speed as f32),
             rain_triad,
             offset_poles,
             offset_terms,
