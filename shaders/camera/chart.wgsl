@@ -6,11 +6,16 @@
 #import geodesic/geodesic
 #import shared/frame
 
-// Doran's azimuth and time less those of Boyer and Lindquist at u, outside the horizon; 0 without RAIN.
+// The offsets of a ray's chart at u from that of Boyer and Lindquist: 0 without RAIN.
 fn chart_offsets(c: Constants, u: f32) -> vec2<f32> {
     if !(SPINNING && RAIN) {
         return vec2<f32>(0.0);
     }
+    return rain_offsets(c, u);
+}
+
+// Doran's azimuth and time less those of Boyer and Lindquist at u, outside the horizon.
+fn rain_offsets(c: Constants, u: f32) -> vec2<f32> {
     let v = sqrt(u);
     let outer = sqrt(c.r_plus) * v;
     let inner = sqrt(c.r_minus) * v;

@@ -7,7 +7,7 @@
 #import shared/matter
 
 // The laws of motion that a kernel's matter has, as bits of MOTION_*: others are left out when it is compiled.
-override MOTIONS: u32 = 15u;
+override MOTIONS: u32 = 31u;
 
 // The metric at a place outside the horizon.
 struct Place {
@@ -37,36 +37,41 @@ fn place_omega(a: f32, at: Place) -> f32 {
     return 2.0 * a * at.r / at.big_a;
 }
 
-// Light as the ZAMO measures it, in the units of c.energy: its frequency, its momentum outwards and along phi, and the
-// square of that across the radius.
+// Light as the ZAMO measures it, in the units of c.energy: its frequency, its momentum outwards, along phi and along
+// theta, and the square of that across the radius.
 struct ZamoLight {
     frequency: f32,
     radial: f32,
     azimuthal: f32,
+    polar: f32,
     across2: f32,
 }
 
-fn zamo_light(c: Constants, at: Place, du: f32) -> ZamoLight {
+// `turn`: (cos theta)' of the ray.
+fn zamo_light(c: Constants, at: Place, du: f32, turn: f32) -> ZamoLight {
     let sine = sqrt(at.sin2);
     let part = c.a * c.energy * sine - c.angular_momentum / sine;
     let azimuthal = c.angular_momentum / at.around;
+    let polar2 = max(c.b - part * part, 0.0) / at.sigma;
+    let polar_most = sqrt(polar2);
     return ZamoLight(
         (c.energy - place_omega(c.a, at) * c.angular_momentum) / at.lapse,
         du * at.r * at.r * inverseSqrt(at.sigma * at.delta),
         azimuthal,
-        max(c.b - part * part, 0.0) / at.sigma + azimuthal * azimuthal,
+        clamp(turn * inverseSqrt(at.sigma) / sine, -polar_most, polar_most),
+        polar2 + azimuthal * azimuthal,
     );
 }
 
-// -p.U, the frequency that matter with the velocity (along phi; outwards, of the four-velocity) measures.
-fn measured_by(light: ZamoLight, velocity: vec2<f32>) -> f32 {
-    let v = velocity.x;
-    let gamma = sqrt((1.0 + velocity.y * velocity.y) / (1.0 - v * v));
+// -p.U, the frequency that matter with the velocity (along phi; outwards, of the four-velocity; along theta) measures.
+fn measured_by(light: ZamoLight, velocity: vec3<f32>) -> f32 {
+    let v2 = velocity.x * velocity.x + velocity.z * velocity.z;
+    let gamma = sqrt((1.0 + velocity.y * velocity.y) / (1.0 - v2));
     let time = gamma * light.frequency;
     let along = velocity.y * light.radial;
-    let gv = gamma * v;
-    let square = (1.0 + gv * gv) * light.frequency * light.frequency + velocity.y * velocity.y * light.across2;
-    return select(time - along, square / (time + along), along > 0.0) - gv * light.azimuthal;
+    let square = (1.0 + gamma * gamma * v2) * light.frequency * light.frequency + velocity.y * velocity.y * light.across2;
+    return select(time - along, square / (time + along), along > 0.0)
+        - gamma * (velocity.x * light.azimuthal + velocity.z * light.polar);
 }
 
 // dph/dt of matter with the velocity (along phi; outwards) about the hole of spin `a`.

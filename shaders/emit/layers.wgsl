@@ -72,7 +72,7 @@ fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow
     let du = quintic_slope(course.u, x) / h;
     let at = place_at(c, u, cosine);
     let velocity = flow_velocity(c, at, matter);
-    let nu = measured_by(zamo_light(c, at, du), velocity) / c.nu_local;
+    let nu = measured_by(zamo_light(c, at, du, 0.0), vec3<f32>(velocity, 0.0)) / c.nu_local;
     // No motion has such a frequency where this fails; NaN fails it as well.
     let moves = nu > 0.0 && nu < 1e30 && u == exact;
     let g = select(1.0, ratio / nu, moves);

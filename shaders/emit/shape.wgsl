@@ -7,7 +7,7 @@
 #import shared/math
 
 // The shapes that a kernel's matter has, as bits of SHAPE_*: others are left out when it is compiled.
-override SHAPES: u32 = 31u;
+override SHAPES: u32 = 63u;
 
 // Whether matter of `shape` is `one`. Where a kernel knows one shape it is known when that is compiled.
 fn has_shape(shape: u32, one: u32) -> bool {
@@ -90,7 +90,7 @@ fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> 
 fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
     let near = 1.0 / u.x;
     let far = 1.0 / u.y;
-    if has_shape(matter.shape, SHAPE_SPOT) {
+    if has_shape(matter.shape, SHAPE_SPOT) || has_shape(matter.shape, SHAPE_FREE_SPOT) {
         let run = near - far;
         let across = swept / max(min(u.x, u.y), 1e-30);
         return sqrt(run * run + across * across) / matter.size;

@@ -8,6 +8,7 @@
 #import emit/clouds
 #import emit/course
 #import emit/flow
+#import emit/free_spot
 #import emit/glow
 #import emit/layers
 #import shared/matter
@@ -324,7 +325,9 @@ fn coefficients_at(
         let du = quintic_slope(course.u, x) / h;
         var azimuth = 0.0;
         var later = 0.0;
-        if STRUCTURE || (SHAPES & (1u << SHAPE_SPOT)) != 0u {
+        // The same in Doran's chart.
+        var rain = vec2<f32>(0.0);
+        if STRUCTURE || (SHAPES & ((1u << SHAPE_SPOT) | (1u << SHAPE_FREE_SPOT))) != 0u {
             let offsets = chart_offsets(c, u);
             let n = vec2<f32>(quintic_at(course.n_x, x), quintic_at(course.n_y, x));
             azimuth = arctan2(n.y, n.x) + cubic_at(course.drag, x) - offsets.x;
@@ -332,17 +335,38 @@ fn coefficients_at(
                 let integral = cubic_at(course.delay, x) - observer.delay + offsets.y;
                 later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
             }
+            if (SHAPES & (1u << SHAPE_FREE_SPOT)) != 0u {
+                rain = vec2<f32>(azimuth, later) + rain_offsets(c, u);
+                // All of it is where it is at the frame's time if light does not take any.
+                rain.y = select(0.0, rain.y, DELAY);
+            }
         }
         for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
             let matter = frame.matter[k];
-            let even = density_at(r, cosine, azimuth, later, matter);
+            let is_free = has_shape(matter.shape, SHAPE_FREE_SPOT);
+            var centre = SpotCentre();
+            var even = 0.0;
+            if is_free {
+                centre = spot_centre(rain.y, matter);
+                even = free_density(r, cosine, rain.x, centre, matter);
+            } else {
+                even = density_at(r, cosine, azimuth, later, matter);
+            }
             if !(even >= matter.least_density) {
                 continue;
             }
             let at = place_at(c, u, cosine);
-            let light = zamo_light(c, at, du);
+            var turn = 0.0;
+            if (SHAPES & (1u << SHAPE_FREE_SPOT)) != 0u {
+                turn = quintic_slope(course.n_z, x) / h;
+            }
+            let light = zamo_light(c, at, du, turn);
             let velocity = flow_velocity(c, at, matter);
-            let nu = measured_by(light, velocity) / c.nu_local;
+            var motion = vec3<f32>(velocity, 0.0);
+            if is_free {
+                motion = zamo_velocity(at, rain_velocity(c.a, centre.position, centre.rate));
+            }
+            let nu = measured_by(light, motion) / c.nu_local;
             var structure = vec2<f32>(1.0);
             if STRUCTURE && k < MOST_VOLUMES {
                 let there = CloudPlace(r, cosine, azimuth, later);

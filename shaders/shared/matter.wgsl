@@ -17,7 +17,7 @@ struct Matter {
     // The sense of motion: +1 or -1.
     sense: f32,
     // Radii between which a volume is, M; the radius that its shape is about, or that of a spot's orbit; the width of a
-    // torus.
+    // torus. Of a spot in free fall `inner` is 1 if its places are the denser the nearer to the last, else 0.
     inner: f32,
     outer: f32,
     radius: f32,
@@ -29,7 +29,7 @@ struct Matter {
     // The ISCO of the matter's sense of motion.
     isco: f32,
     // Numbers of the law of motion. KEPLERIAN: sub_keplerian, infall; ANGULAR_MOMENTUM: l0, 0; RIGID: angular velocity,
-    // 0; OUTFLOW: speed, base.
+    // 0; OUTFLOW: speed, base; FREE: rain time of the first place less that of the frame, and time to the last one, M.
     law: vec2<f32>,
     // A spot's azimuth at the frame's time, and its angular velocity towards +phi, rad/M.
     azimuth: f32,
@@ -47,4 +47,6 @@ struct Matter {
     least_density: f32,
     // Linear Rec. 709.
     tint: vec3<f32>,
+    // The first entry of light_tables that has places of a spot in free fall.
+    places: u32,
 }

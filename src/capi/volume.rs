@@ -9,7 +9,7 @@ use super::pointer::{Out, check_flags, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
-use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
+use crate::scene::{Body, Chart, FlowLaw, HotSpot, Shape, Volume};
 
 /// The place of a volume's matter: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1
 /// at inner_radius (DISK), at radius (JET) or in the middle (TORUS, HALO), but for soft edges at inner_radius and
@@ -219,21 +219,32 @@ pub const BHR_HOT_SPOT_RETROGRADE: u32 = 1u32;
 /// BhrHotSpot.flags: the light is a blackbody's, not a power law's; without absorption there is none.
 pub const BHR_HOT_SPOT_THERMAL: u32 = 2u32;
 
-/// A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
-/// being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at
-/// dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
+/// BhrHotSpot.flags: the centre is a body in free fall, which position, velocity and time tell; radius, azimuth and
+/// RETROGRADE have no meaning.
+pub const BHR_HOT_SPOT_FREE: u32 = 4u32;
+/// BhrHotSpot.flags, with FREE: they are told in BHR_CHART_RAIN, else in BHR_CHART_STATIC.
+pub const BHR_HOT_SPOT_RAIN: u32 = 8u32;
+
+/// A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
+/// sizes, d being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does,
+/// at dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
 /// light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
-/// (docs/matter.md). @since 0.2.0
+/// (docs/matter.md).
+///
+/// With BHR_HOT_SPOT_FREE the centre moves on any geodesic, followed both ways for some thousand turns about the hole
+/// and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart at one rain time, and
+/// all of it has the velocity that rain observers see of the centre. While its centre is at more than 200 sizes it is
+/// shown as if it were r / 200. @since 0.2.0
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrHotSpot {
     /// sizeof(BhrHotSpot).
     pub struct_size: u32,
-    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL. Default 0.
+    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL | BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN. Default 0.
     pub flags: u32,
     /// In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
     pub radius: f64,
-    /// In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8.
+    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
     pub size: f64,
     /// The centre at scene time 0, radians within +-1e6. Default 0.
     pub azimuth: f64,
@@ -247,6 +258,12 @@ pub struct BhrHotSpot {
     pub tint: [f64; 3],
     /// 0 .. 1e6, as BhrVolume.brightness. Default 1.
     pub brightness: f64,
+    /// FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
+    /// BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0.
+    pub position: [f64; 3],
+    pub velocity: [f64; 3],
+    /// FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0.
+    pub time: f64,
 }
 
 /// Most hot spots of a scene. @since 0.2.0
@@ -257,7 +274,7 @@ const _: () = assert!(BHR_MAX_HOT_SPOTS == HotSpot::MOST);
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrHotSpot {
     const NAME: &'static str = "BhrHotSpot";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[88, 144];
     fn defaults() -> Self {
         HotSpot::default().into()
     }
@@ -268,7 +285,11 @@ impl From<HotSpot> for BhrHotSpot {
         Self {
             struct_size: 0,
             flags: if spot.retrograde { BHR_HOT_SPOT_RETROGRADE } else { 0 }
-                | if spot.thermal { BHR_HOT_SPOT_THERMAL } else { 0 },
+                | if spot.thermal { BHR_HOT_SPOT_THERMAL } else { 0 }
+                | spot.free.map_or(0, |body| match Body::of_falling(&body).chart {
+                    Chart::Static => BHR_HOT_SPOT_FREE,
+                    Chart::Rain => BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN,
+                }),
             radius: spot.radius,
             size: spot.size,
             azimuth: spot.azimuth,
@@ -277,6 +298,9 @@ impl From<HotSpot> for BhrHotSpot {
             spectral_index: spot.spectral_index,
             tint: spot.tint,
             brightness: spot.brightness,
+            position: spot.free.map_or([0.0; 3], |body| body.position.to_array()),
+            velocity: spot.free.map_or([0.0; 3], |body| body.velocity.to_array()),
+            time: spot.free.map_or(0.0, |body| body.time),
         }
     }
 }
@@ -285,8 +309,12 @@ impl TryFrom<BhrHotSpot> for HotSpot {
     type Error = Error;
 
     fn try_from(given: BhrHotSpot) -> Result<Self> {
-        let flags = check_flags(given.flags, BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL, "hot spot flags")?;
+        let known = BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL | BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN;
+        let flags = check_flags(given.flags, known, "hot spot flags")?;
+        let chart = if flags & BHR_HOT_SPOT_RAIN != 0 { Chart::Rain } else { Chart::Static };
+        let body = Body { chart, position: given.position.into(), velocity: given.velocity.into(), time: given.time };
         let spot = Self {
+            free: (flags & BHR_HOT_SPOT_FREE != 0).then(|| body.falling()),
             retrograde: flags & BHR_HOT_SPOT_RETROGRADE != 0,
             thermal: flags & BHR_HOT_SPOT_THERMAL != 0,
             radius: given.radius,
@@ -364,7 +392,9 @@ pub unsafe extern "C" fn bhr_get_volumes(
     }
 }
 
-/// Sets all hot spots of the scene, at most BHR_MAX_HOT_SPOTS, as bhr_set_volumes does the volumes. @since 0.2.0
+/// Sets all hot spots of the scene, at most BHR_MAX_HOT_SPOTS, as bhr_set_volumes does the volumes. One in free fall
+/// is checked against the hole as it is, with bhr_world_line's errors; where a later hole has no such place it is not
+/// shown. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_hot_spots(
     context: *mut BhrContext,
@@ -375,8 +405,7 @@ pub unsafe extern "C" fn bhr_set_hot_spots(
     // SAFETY: NULL or count elements, by the header's conventions.
     unsafe {
         on_context("bhr_set_hot_spots", context, |state| {
-            state.renderer.scene.hot_spots = read_array(hot_spots, hot_spot_size, count, &HOT_SPOTS)?;
-            Ok(())
+            state.renderer.scene.set_hot_spots(read_array(hot_spots, hot_spot_size, count, &HOT_SPOTS)?)
         })
     }
 }

@@ -97,7 +97,7 @@ impl<'a, 'b> Layers<'a, 'b> {
         let (r, cos) = (1.0 / u, there.n.z / there.n.length());
         let at = Place::on_ray(c, u, cos);
         let velocity = volume.flow.velocity(c.a, &at);
-        let nu = ZamoLight::new(c, &at, there.du).measured_by(velocity) / c.nu_local;
+        let nu = ZamoLight::new(c, &at, there.du, there.dn.z).measured_by(velocity) / c.nu_local;
         // No motion has such a frequency where this fails; NaN fails it as well.
         let moves = nu > 0.0 && nu.is_finite() && u == there.u;
         let (g, nu) = if moves { (self.frequency_ratio / nu, nu) } else { (1.0, 0.0) };

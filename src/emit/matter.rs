@@ -5,6 +5,7 @@
 use super::baking::BakeKey;
 use super::bands::When;
 use super::clouds::Clouds;
+use super::free_spot::{Centre, FreeCentre};
 use super::glow::Glow;
 use super::hot_spot::HotSpot;
 use super::shape::{Cloud, Reach, Stretch, gaussian};
@@ -13,6 +14,9 @@ use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion};
 use crate::physics::geodesic::wrap_angle;
 use crate::physics::orbit::horizon_outer;
+use crate::physics::rain::OffsetSeries;
+use glam::DVec3;
+use std::sync::Arc;
 
 /// The radii at which a volume may bend.
 pub(super) const BENDS: usize = 6;
@@ -76,16 +80,20 @@ pub struct VolumeMatter {
 }
 
 /// A hot spot of a frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SpotMatter {
+    /// That of its orbit; 0 in free fall, as the next but one.
     pub radius: f64,
     pub size: f64,
     /// Azimuth of its centre at the time `When::time`, and its change in time, towards +ph.
     pub azimuth: f64,
     pub angular_velocity: f64,
     pub reach: Reach,
+    /// The motion of one on a circle.
     pub flow: Flow,
     pub glow: Glow,
+    /// The centre of one in free fall.
+    pub free: Option<Arc<FreeCentre>>,
 }
 
 impl VolumeMatter {
@@ -163,33 +171,52 @@ impl VolumeMatter {
 }
 
 impl SpotMatter {
-    /// About a hole of spin `spin`, as a frame shows it.
-    pub fn new(spot: &HotSpot, spin: f64, when: &When) -> Self {
+    /// About a hole of spin `spin`, as a frame shows it. `series`: the offsets of Doran's chart, for spots in free fall.
+    /// `None`: its centre is nowhere at the time.
+    pub fn new(spot: &HotSpot, spin: f64, when: &When, series: Option<&OffsetSeries>) -> Option<Self> {
         let sense = if spot.retrograde { -1.0 } else { 1.0 };
+        let glow = Glow {
+            power_law: !spot.thermal,
+            absorption: spot.absorption,
+            temperature: spot.temperature,
+            reference_radius: 1.0,
+            temperature_slope: 0.0,
+            log_reference: BlackbodyTable::shared().ln_luminance(spot.temperature),
+            spectral_index: spot.spectral_index,
+            tint: spot.tint,
+            brightness: spot.brightness,
+        };
+        if let Some(body) = &spot.free {
+            let centre = FreeCentre::new(spin, body, spot.size, series?, when.time, when.delayed)?;
+            // One that is too small for the samples along rays from far away is shown wider.
+            let size = spot.size.max(HotSpot::SMALLEST * centre.r);
+            let ([low, high], cos) = centre.reach(HotSpot::CUT * size, horizon_outer(spin));
+            return Some(Self {
+                radius: 0.0,
+                size,
+                azimuth: 0.0,
+                angular_velocity: 0.0,
+                reach: Reach { u: [1.0 / high, 1.0 / low], cos },
+                flow: Flow::new(spin, false, Motion::Rigid { angular_velocity: 0.0 }),
+                glow,
+                free: Some(Arc::new(centre)),
+            });
+        }
         let radius = spot.radius.max(Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity: 0.0 }).isco);
         let angular_velocity = 1.0 / (radius * radius.sqrt() + sense * spin);
         let flow = Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity });
         let cut = HotSpot::CUT * spot.size;
         let low = (radius - cut).max(horizon_outer(spin));
-        Self {
+        Some(Self {
             radius,
             size: spot.size,
             azimuth: wrap_angle((spot.azimuth + sense * angular_velocity * when.time) % std::f64::consts::TAU),
             angular_velocity: sense * angular_velocity,
             reach: Reach { u: [1.0 / (radius + cut), 1.0 / low], cos: (cut / low).min(1.0) },
             flow,
-            glow: Glow {
-                power_law: !spot.thermal,
-                absorption: spot.absorption,
-                temperature: spot.temperature,
-                reference_radius: 1.0,
-                temperature_slope: 0.0,
-                log_reference: BlackbodyTable::shared().ln_luminance(spot.temperature),
-                spectral_index: spot.spectral_index,
-                tint: spot.tint,
-                brightness: spot.brightness,
-            },
-        }
+            glow,
+            free: None,
+        })
     }
 
     /// The density at (1/r, cos th, azimuth) = (1 / `r`, `cos`, `azimuth`), `later` after `When::time`: a Gaussian of
@@ -200,6 +227,16 @@ impl SpotMatter {
         let axis = r * ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
         let half = (0.5 * from).sin();
         let square = (axis - self.radius).powi(2) + 4.0 * axis * self.radius * half * half + (r * cos).powi(2);
+        self.density_at(square)
+    }
+
+    /// The density at a place of Doran's chart, of one in free fall.
+    pub fn free_density(&self, place: DVec3, centre: &Centre) -> f64 {
+        centre.share * self.density_at(place.distance_squared(centre.position))
+    }
+
+    /// The density at the square of a distance from the centre.
+    fn density_at(&self, square: f64) -> f64 {
         let widths = square.sqrt() / self.size;
         if widths < HotSpot::CUT { gaussian(widths) } else { 0.0 }
     }
@@ -224,7 +261,8 @@ mod tests {
         for (retrograde, sense) in [(false, 1.0), (true, -1.0)] {
             let spot = HotSpot { retrograde, radius: 9.0, azimuth: 0.3, ..HotSpot::default() };
             let when = When { time: 1e4, ..When::default() };
-            let matter = SpotMatter::new(&spot, spin, &when);
+            let new = |spot: &HotSpot| SpotMatter::new(spot, spin, &when, None).unwrap();
+            let matter = new(&spot);
             let omega = sense / (27.0 + sense * spin);
             assert!((matter.angular_velocity / omega - 1.0).abs() < 1e-14);
             for later in [-40.0, 0.0, 13.0] {
@@ -234,7 +272,7 @@ mod tests {
                 assert!((beside - gaussian(1.0)).abs() < 1e-9, "{later}: {beside}");
                 assert_eq!(matter.density(9.0, 0.0, azimuth + 2.0, later), 0.0);
             }
-            let inner = SpotMatter::new(&HotSpot { radius: 1.0, ..spot }, spin, &when);
+            let inner = new(&HotSpot { radius: 1.0, ..spot });
             assert_eq!(inner.radius, isco(sense * spin));
         }
     }

@@ -26,6 +26,7 @@ pub mod baking;
 pub mod medium;
 pub mod turbulence;
 pub mod half;
+pub mod free_spot;
 pub mod matter;
 pub mod baked;
 pub mod layers;

@@ -23,11 +23,14 @@ use super::shape::{Reach, Stretch};
 use super::volume::{Shape, Volume};
 use crate::error::Result;
 use crate::physics::flow::{Place, Velocity, ZamoLight};
-use crate::physics::geodesic::{Constants, State};
+use crate::physics::geodesic::{Constants, State, turned};
 use crate::physics::observer::StaticObserver;
 use crate::physics::quadrature::{GAUSS_NODES, GAUSS_WEIGHTS};
+use crate::physics::rain::OffsetSeries;
+use crate::physics::rain_motion::{rain_velocity, zamo_velocity};
 use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// The greatest changes over a piece: of ln r, and of the angle about the hole, rad.
@@ -110,6 +113,8 @@ pub struct Volumes {
     pub hot_spots: Vec<SpotMatter>,
     /// The structure of each volume (`BakedCache::prepare`); without, or where it is `None`, volumes are even.
     pub baked: Vec<Option<Arc<Baked>>>,
+    /// The offsets of Doran's chart, in which spots in free fall are; `None`: none is.
+    pub offsets: Option<OffsetSeries>,
     effects: Effects,
     pub when: When,
     accuracy: Accuracy,
@@ -187,9 +192,12 @@ impl Volumes {
         accuracy: Accuracy,
     ) -> Self {
         let matter = |volume: &Volume| VolumeMatter::new(volume, spin, &when, accuracy);
+        let series = hot_spots.iter().any(|spot| spot.free.is_some()).then(|| OffsetSeries::new(spin));
+        let spot = |spot: &HotSpot| SpotMatter::new(spot, spin, &when, series.as_ref());
         Self {
             volumes: volumes.iter().filter_map(matter).take(Volume::MOST).collect(),
-            hot_spots: hot_spots.iter().take(HotSpot::MOST).map(|s| SpotMatter::new(s, spin, &when)).collect(),
+            hot_spots: hot_spots.iter().take(HotSpot::MOST).filter_map(spot).collect(),
+            offsets: series,
             baked: Vec::new(),
             effects,
             when,
@@ -335,7 +343,7 @@ impl Volumes {
         let mut measure = || {
             *measured.get_or_insert_with(|| {
                 let at = Place::on_ray(c, there.u, cos);
-                (at, ZamoLight::new(c, &at, there.du))
+                (at, ZamoLight::new(c, &at, there.du, there.dn.z / there.n.length()))
             })
         };
         let mut moment = None;
@@ -376,6 +384,23 @@ impl Volumes {
         }
         for spot in &self.hot_spots {
             let (azimuth, later) = moment();
+            if let (Some(free), Some(series)) = (&spot.free, &self.offsets) {
+                let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);
+                let Some(centre) = free.at(if self.when.delayed { later + offsets.time } else { 0.0 }) else {
+                    continue;
+                };
+                let place = turned(
+                    DVec3::new(((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt(), 0.0, cos) * r,
+                    azimuth + offsets.azimuth,
+                );
+                let density = spot.free_density(place, &centre);
+                if density > 0.0 {
+                    let (at, light) = measure();
+                    let velocity = zamo_velocity(&at, rain_velocity(c.a, centre.position, centre.rate));
+                    add(&light, velocity, &spot.glow, density, 1.0);
+                }
+                continue;
+            }
             let density = spot.density(r, cos, azimuth, later);
             if density > 0.0 {
                 let (at, light) = measure();

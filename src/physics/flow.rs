@@ -2,9 +2,10 @@
 //! The motion of matter with depth, anywhere outside the horizon, and the frequency that it measures of light. Knows no
 //! light's colour, no density and no tracer.
 //!
-//! A flow is stated by what the local ZAMO measures of it: v, its velocity along ph, and u_r, the radial component of
-//! its four-velocity, in the ZAMO's orthonormal frame; none moves along theta. Then U.U = -1 for any |v| < 1 and any
-//! u_r: with gamma = sqrt((1 + u_r^2) / (1 - v^2)), U = (gamma, u_r, 0, gamma v).
+//! A flow is stated by what the local ZAMO measures of it: v = (v_th, v_ph), its velocity along th and ph, and u_r, the
+//! radial component of its four-velocity, in the ZAMO's orthonormal frame. Then U.U = -1 for any |v| < 1 and any u_r:
+//! with gamma = sqrt((1 + u_r^2) / (1 - v^2)), U = (gamma, u_r, gamma v_th, gamma v_ph). None of the laws of motion
+//! here has a v_th; bodies in free fall have one (`rain_motion`).
 //!
 //! `a` is the spin, Sg = r^2 + a^2 cos^2 th, Delta = r^2 - 2 r + a^2, A = (r^2 + a^2)^2 - Delta a^2 sin^2 th, the lapse
 //! al = sqrt(Sg Delta / A), g_phph = A sin^2 th / Sg and the ZAMO's angular velocity om = 2 a r / A (Bardeen, Press &
@@ -75,32 +76,36 @@ impl Place {
 pub struct ZamoLight {
     /// Its frequency, (E - om L) / al.
     pub frequency: f64,
-    /// Its momentum outwards and along ph.
+    /// Its momentum outwards, along ph and along th.
     pub radial: f64,
     pub azimuthal: f64,
+    pub polar: f64,
     /// The square of its momentum across the radius.
     pub across2: f64,
 }
 
 impl ZamoLight {
-    /// The light of the ray `c` where u' = `du`: rays are traced backward, so that the light's own momentum has p_r =
-    /// u' / D with D = Delta / r^2. Across the radius it has ((Q + (L - a E)^2) - (a E sin th - L / sin th)^2) / Sg
-    /// (Carter 1968), and the part along ph besides.
-    pub fn new(c: &Constants, at: &Place, du: f64) -> Self {
+    /// The light of the ray `c` where u' = `du` and (cos th)' = `turn`: rays are traced backward, so that the light's
+    /// own momentum has p_r = u' / D with D = Delta / r^2, and p_th = (cos th)' / sin th. Across the radius it has ((Q +
+    /// (L - a E)^2) - (a E sin th - L / sin th)^2) / Sg (Carter 1968), and the part along ph besides.
+    pub fn new(c: &Constants, at: &Place, du: f64, turn: f64) -> Self {
         let l2 = c.angular_momentum * c.angular_momentum;
         let sin = at.sin2.sqrt();
         let polar2 = c.b - (c.a * c.energy * sin - c.angular_momentum / sin).powi(2);
+        // Beside the axis, where (cos th)' / sin th is 0 / 0, it is no more than this.
+        let polar_most = (polar2.max(0.0) / at.sigma).sqrt();
         Self {
             frequency: (c.energy - at.omega(c.a) * c.angular_momentum) / at.lapse,
             radial: du * at.r * at.r / (at.sigma * at.delta).sqrt(),
             azimuthal: c.angular_momentum / at.around,
-            across2: polar2.max(0.0) / at.sigma + l2 / (at.around * at.around),
+            polar: (turn / (at.sin2 * at.sigma).sqrt()).clamp(-polar_most, polar_most),
+            across2: polar_most * polar_most + l2 / (at.around * at.around),
         }
     }
 
     /// -p.U, the frequency that matter with `velocity` measures.
     ///
-    /// By definition that is gamma nu - u_r p_r - gamma v p_ph. Where matter and light both move inwards, or both
+    /// By definition that is gamma nu - u_r p_r - gamma v.p, with p across the radius. Where matter and light both move inwards, or both
     /// outwards, the first two terms are close to each other near the horizon, and (with nu^2 = p_r^2 + p_across^2)
     ///
     /// ```text
@@ -109,25 +114,32 @@ impl ZamoLight {
     ///
     /// has no difference in it.
     pub fn measured_by(&self, velocity: Velocity) -> f64 {
-        let Velocity { around: v, radial } = velocity;
-        let gamma = ((1.0 + radial * radial) / (1.0 - v * v)).sqrt();
+        let (Velocity { around, polar, radial }, gamma) = (velocity, velocity.gamma());
         let (time, along) = (gamma * self.frequency, radial * self.radial);
-        let square = (1.0 + (gamma * v).powi(2)) * self.frequency * self.frequency + radial * radial * self.across2;
+        let v2 = around * around + polar * polar;
+        let square = (1.0 + gamma * gamma * v2) * self.frequency * self.frequency + radial * radial * self.across2;
         let outwards = if along > 0.0 { square / (time + along) } else { time - along };
-        outwards - gamma * v * self.azimuthal
+        outwards - gamma * (around * self.azimuthal + polar * self.polar)
     }
 }
 
 /// The motion of matter as the local ZAMO measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Velocity {
-    /// Along ph, as a velocity; matter is where it lies within +-1.
+    /// Along ph and along th, as velocities; matter is where both together lie within 1.
     pub around: f64,
+    pub polar: f64,
     /// Outwards, the component of the four-velocity: any number.
     pub radial: f64,
 }
 
 impl Velocity {
+    /// The Lorentz factor.
+    fn gamma(self) -> f64 {
+        let v2 = self.around * self.around + self.polar * self.polar;
+        ((1.0 + self.radial * self.radial) / (1.0 - v2)).sqrt()
+    }
+
     /// dph/dt of matter that moves so, about the hole of spin `a`.
     pub fn angular_velocity(self, a: f64, at: &Place) -> f64 {
         at.omega(a) + at.lapse * self.around / at.around
@@ -135,8 +147,7 @@ impl Velocity {
 
     /// dr/dt of it.
     pub fn radial_velocity(self, at: &Place) -> f64 {
-        let gamma = ((1.0 + self.radial * self.radial) / (1.0 - self.around * self.around)).sqrt();
-        at.lapse * self.radial / gamma * (at.delta / at.sigma).sqrt()
+        at.lapse * self.radial / self.gamma() * (at.delta / at.sigma).sqrt()
     }
 }
 
@@ -188,15 +199,16 @@ impl Flow {
     /// The velocity of the matter at a place of the hole of spin `a`.
     pub fn velocity(&self, a: f64, at: &Place) -> Velocity {
         let spin = self.sense * a;
-        let Velocity { around, radial } = match self.motion {
+        let Velocity { around, polar, radial } = match self.motion {
             Motion::Keplerian { sub_keplerian, infall } => keplerian(spin, at, self.isco, sub_keplerian, infall),
             Motion::AngularMomentum { l0 } => with_angular_momentum(spin, at, l0),
             Motion::Rigid { angular_velocity } => {
-                Velocity { around: at.around / at.lapse * (angular_velocity - at.omega(spin)), radial: 0.0 }
+                let around = at.around / at.lapse * (angular_velocity - at.omega(spin));
+                Velocity { around, polar: 0.0, radial: 0.0 }
             }
             Motion::Outflow { speed, base } => outflow(spin, at, speed, base),
         };
-        Velocity { around: self.sense * around, radial }
+        Velocity { around: self.sense * around, polar, radial }
     }
 
     /// The frequency that the matter measures of light; NaN or 0 where no matter can move so.
@@ -211,7 +223,7 @@ pub fn keplerian(a: f64, at: &Place, isco: f64, sub_keplerian: f64, infall: f64)
         // Circular geodesics: Omega is that of the plane (Bardeen, Press & Teukolsky 1972, equation 2.16). Most matter
         // has it, at half the cost of what follows.
         let around = 1.0 / (at.r * at.r.sqrt() + a);
-        return Velocity { around: (around - at.omega(a)) * at.around / at.lapse, radial: 0.0 };
+        return Velocity { around: (around - at.omega(a)) * at.around / at.lapse, polar: 0.0, radial: 0.0 };
     }
     let orbit = at.r.max(isco);
     let root = orbit.sqrt();
@@ -229,6 +241,7 @@ pub fn keplerian(a: f64, at: &Place, isco: f64, sub_keplerian: f64, infall: f64)
     let rain = -(2.0 * at.r * (at.r * at.r + a * a)).sqrt() / at.sigma;
     Velocity {
         around: (1.0 - infall) * over * at.around / at.lapse,
+        polar: 0.0,
         radial: ((1.0 - infall) * plunge + infall * rain) * (at.sigma / at.delta).sqrt(),
     }
 }
@@ -237,7 +250,7 @@ pub fn keplerian(a: f64, at: &Place, isco: f64, sub_keplerian: f64, infall: f64)
 pub fn with_angular_momentum(a: f64, at: &Place, l0: f64) -> Velocity {
     let axis = at.r * at.sin2.sqrt();
     let l = l0 * axis * axis.sqrt() / (1.0 + axis);
-    Velocity { around: at.lapse * l / (at.around * (1.0 - at.omega(a) * l)), radial: 0.0 }
+    Velocity { around: at.lapse * l / (at.around * (1.0 - at.omega(a) * l)), polar: 0.0, radial: 0.0 }
 }
 
 /// `Motion::Outflow`, the hole's spin `a` being counted along +ph.
@@ -247,7 +260,7 @@ pub fn outflow(a: f64, at: &Place, speed: f64, base: f64) -> Velocity {
     let x = a / (4.0 * horizon_outer(a)) * at.around;
     let around = ((1.0 - outwards) * (1.0 + outwards)).sqrt() * x / (1.0 + x * x);
     // u_r = gamma v_r, with gamma of the whole velocity.
-    Velocity { around, radial: outwards / (1.0 - outwards * outwards - around * around).sqrt() }
+    Velocity { around, polar: 0.0, radial: outwards / (1.0 - outwards * outwards - around * around).sqrt() }
 }
 
 /// The state of a ray in terms of the place that it is at.
@@ -278,10 +291,11 @@ mod tests {
 
     /// U^t, U^r, U^th, U^ph of a velocity, by the ZAMO's tetrad.
     fn four_velocity(a: f64, at: &Place, velocity: Velocity) -> [f64; 4] {
-        let Velocity { around, radial } = velocity;
-        let gamma = ((1.0 + radial * radial) / (1.0 - around * around)).sqrt();
+        let Velocity { around, polar, radial } = velocity;
+        let gamma = ((1.0 + radial * radial) / (1.0 - around * around - polar * polar)).sqrt();
         let time = gamma / at.lapse;
-        [time, radial * (at.delta / at.sigma).sqrt(), 0.0, time * at.omega(a) + gamma * around / at.around]
+        let turn = time * at.omega(a) + gamma * around / at.around;
+        [time, radial * (at.delta / at.sigma).sqrt(), gamma * polar / at.sigma.sqrt(), turn]
     }
 
     fn product(a: f64, at: &Place, u: [f64; 4], v: [f64; 4]) -> f64 {
@@ -338,7 +352,8 @@ mod tests {
                         let at = place_of(&c, &state);
                         let flow = Flow::new(spin, false, motion);
                         let velocity = flow.velocity(spin, &at);
-                        let nu = flow.frequency(&c, &at, &ZamoLight::new(&c, &at, state.du));
+                        let light = ZamoLight::new(&c, &at, state.du, state.dn.z);
+                        let nu = flow.frequency(&c, &at, &light);
                         // The tetrad's momentum, -n of the local frame, in coordinates.
                         let (p, local) = (-n * c.nu_local, c.nu_local / at.lapse);
                         let root = [(at.delta / at.sigma).sqrt(), 1.0 / at.sigma.sqrt()];
@@ -347,10 +362,16 @@ mod tests {
                         let u = four_velocity(spin, &at, velocity);
                         let expected = -product(spin, &at, p, u);
                         assert!((nu / expected - 1.0).abs() < 1e-9, "{spin} {motion:?} {r}: {nu} {expected}");
+                        for polar in [-0.3, 0.45] {
+                            let tilted = Velocity { polar, around: 0.6 * velocity.around, ..velocity };
+                            let nu = light.measured_by(tilted);
+                            let expected = -product(spin, &at, p, four_velocity(spin, &at, tilted));
+                            assert!((nu / expected - 1.0).abs() < 1e-9, "{spin} {tilted:?} {r}: {nu} {expected}");
+                        }
                         let (c, state) = mirror.start(DVec3::new(n.x, n.y, -n.z)).unwrap();
                         let at = place_of(&c, &state);
                         let flow = Flow::new(-spin, true, motion);
-                        let mirrored = flow.frequency(&c, &at, &ZamoLight::new(&c, &at, state.du));
+                        let mirrored = flow.frequency(&c, &at, &ZamoLight::new(&c, &at, state.du, 0.0));
                         assert!((nu / mirrored - 1.0).abs() < 1e-12, "{spin} {motion:?} {r}: {nu} {mirrored}");
                         compared += 1;
                     }
@@ -391,7 +412,7 @@ mod tests {
                         continue;
                     }
                     for du in [square.sqrt(), -square.sqrt()] {
-                        let nu = flow.frequency(&c, &at, &ZamoLight::new(&c, &at, du));
+                        let nu = flow.frequency(&c, &at, &ZamoLight::new(&c, &at, du, 0.0));
                         let expected = match part < 1.0 {
                             true => plunge.frequency(&c, 1.0 / r, du),
                             false => 1.3 / redshift(spin, 1.0 / r, retrograde, 1.0, l, 1.3),
@@ -431,7 +452,7 @@ mod tests {
                     let w = 1.0 - spin * (0.7 - spin) * u * u;
                     let du = -(w * w - c.horizon_function(u) * c.b * u * u).sqrt();
                     let at = Place::new(spin, u, cos);
-                    flow.frequency(&c, &at, &ZamoLight::new(&c, &at, du))
+                    flow.frequency(&c, &at, &ZamoLight::new(&c, &at, du, 0.0))
                 };
                 let [near, nearer] = [nu(1e-7), nu(1e-10)];
                 assert!(near > 0.0 && near < 1e3, "{spin} {motion:?}: {near}");

@@ -18,6 +18,7 @@ pub mod metric;
 pub mod flow;
 pub mod integrator;
 pub mod observer;
+pub mod rain_motion;
 mod transport;
 pub mod world_line;
 pub mod plunge;

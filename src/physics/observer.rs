@@ -116,16 +116,31 @@ impl Momentum {
 pub struct RainTriad {
     u: f64,
     /// sqrt(2 u).
-    w: f64,
+    pub w: f64,
     /// rho / r.
     pub rho: f64,
     /// sqrt(1 + a^2 u^2).
-    q: f64,
+    pub q: f64,
     /// Q / r, Q = sqrt(g_phph) / sin th.
     pub circumference: f64,
     /// sin d and cos d.
     pub sin_turn: f64,
     pub cos_turn: f64,
+}
+
+impl RainTriad {
+    /// At `r` of a hole of spin `a`, and sine and cosine of theta.
+    pub fn new(a: f64, r: f64, sin: f64, cos: f64) -> Self {
+        let u = 1.0 / r;
+        let au = a * u;
+        let w = (2.0 * u).sqrt();
+        let rho2 = 1.0 + (au * cos).powi(2);
+        let (rho, q) = (rho2.sqrt(), (1.0 + au * au).sqrt());
+        // g_phph = s^2 (r^2 + a^2 + 2 r a^2 s^2 / Sigma): positive inside, too.
+        let circumference = (1.0 + au * au + 2.0 * u * (au * sin).powi(2) / rho2).sqrt();
+        let sin_turn = -w * au * sin / (rho * circumference);
+        Self { u, w, rho, q, circumference, sin_turn, cos_turn: q / circumference }
+    }
 }
 
 /// A momentum in Doran's chart.
@@ -399,15 +414,7 @@ impl LocalFrame {
     }
 
     pub fn rain_triad(&self) -> RainTriad {
-        let u = 1.0 / self.r;
-        let au = self.a * u;
-        let w = (2.0 * u).sqrt();
-        let rho2 = 1.0 + (au * self.cos).powi(2);
-        let (rho, q) = (rho2.sqrt(), (1.0 + au * au).sqrt());
-        // g_phph = s^2 (r^2 + a^2 + 2 r a^2 s^2 / Sigma): positive inside, too.
-        let circumference = (1.0 + au * au + 2.0 * u * (au * self.sin).powi(2) / rho2).sqrt();
-        let sin_turn = -w * au * self.sin / (rho * circumference);
-        RainTriad { u, w, rho, q, circumference, sin_turn, cos_turn: q / circumference }
+        RainTriad::new(self.a, self.r, self.sin, self.cos)
     }
 
     /// A momentum in the rain triad as constants of motion and rates: with p^r and p^ph along E_r and E_ph

@@ -16,6 +16,8 @@ use crate::allocate::{collected, with_room};
 use crate::error::{Error, Number, Result};
 use glam::{DVec3, DVec4};
 
+pub mod table;
+
 /// The longest proper time, M, and the greatest distance of a body at its start, M.
 pub const LONGEST: f64 = 1e12;
 /// The least r, M, that bodies without spin, or with a tiny one, are followed to.
@@ -101,7 +103,7 @@ pub fn each_event(
         order.clear();
         order.extend((0..proper_times.len()).filter(|i| (proper_times[*i] < 0.0) == past));
         order.sort_unstable_by(|i, j| proper_times[*i].abs().total_cmp(&proper_times[*j].abs()));
-        let mut course = Course { line: &line, past, from: start, to: start, h: 0.0, end: None, steps };
+        let mut course = Course { line, past, from: start, to: start, h: 0.0, end: None, steps };
         for i in &order {
             found(*i, course.event(proper_times[*i])?);
         }
@@ -120,6 +122,7 @@ struct Point {
 }
 
 /// All that stays the same along a line.
+#[derive(Clone, Copy)]
 struct Line {
     c: Constants,
     clock: Clock,
@@ -274,8 +277,8 @@ impl Line {
 
 /// A line as it is followed in one direction. The step that was taken last lies between `from` and `to`, so that where
 /// steps end does not depend on the times that are asked for.
-struct Course<'a> {
-    line: &'a Line,
+struct Course {
+    line: Line,
     past: bool,
     from: Point,
     to: Point,
@@ -285,7 +288,7 @@ struct Course<'a> {
     steps: u32,
 }
 
-impl Course<'_> {
+impl Course {
     /// The event at `proper`, which no call before was beyond.
     fn event(&mut self, proper: f64) -> Result<Event> {
         let is_beyond = |point: &Point| point.proper.abs() >= proper.abs();

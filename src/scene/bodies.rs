@@ -5,7 +5,9 @@
 use super::{Chart, Hole};
 use crate::allocate::collected;
 use crate::error::{Error, Number, Result};
+use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
+use crate::physics::world_line::table::WorldLineTable;
 use crate::physics::world_line::{self, Event, LONGEST, each_event};
 use glam::DVec3;
 
@@ -25,6 +27,21 @@ pub struct Body {
     pub velocity: DVec3,
     /// Scene lengths.
     pub time: f64,
+}
+
+impl Body {
+    /// The same for the settings of hot spots, which know no charts.
+    pub fn falling(&self) -> world_line::Body {
+        let Self { chart, position, velocity, time } = *self;
+        world_line::Body { clock: chart.clock(), position, velocity, time }
+    }
+
+    /// The inverse of `falling`.
+    pub fn of_falling(body: &world_line::Body) -> Self {
+        let world_line::Body { clock, position, velocity, time } = *body;
+        let chart = if clock == Clock::Rain { Chart::Rain } else { Chart::Static };
+        Self { chart, position, velocity, time }
+    }
 }
 
 /// A body after a proper time.
@@ -67,6 +84,17 @@ impl Hole {
             },
         )?;
         wrong.map_or(Ok(()), Err)
+    }
+
+    /// Whether a body in the scene's axes and lengths can fall freely about this hole. Errors: as `world_line`.
+    pub fn check_falling(&self, body: &world_line::Body) -> Result<()> {
+        self.falling_in_chart(body).and_then(|body| WorldLineTable::new(self.spin, &body)).map(drop)
+    }
+
+    /// A body in the scene's axes and lengths in those of the chart. Errors: INVALID_ARGUMENT for one at no place.
+    pub(super) fn falling_in_chart(&self, body: &world_line::Body) -> Result<world_line::Body> {
+        let there = self.in_chart(&Body::of_falling(body))?;
+        Ok(world_line::Body { time: body.time / self.mass, ..there })
     }
 
     /// The body in the chart's axes and units, at time 0.

@@ -170,6 +170,17 @@ impl Scene {
         self.volumes = volumes;
     }
 
+    /// Sets the host's hot spots. Errors: as `Hole::check_falling` for one in free fall.
+    pub fn set_hot_spots(&mut self, spots: ArrayVec<HotSpot, { HotSpot::MOST }>) -> Result<()> {
+        for (index, spot) in spots.iter().enumerate() {
+            let Some(body) = &spot.free else { continue };
+            let named = |error: Error| Error::new(error.kind, format!("hot_spots[{index}]: {}", error.message));
+            self.hole.check_falling(body).map_err(named)?;
+        }
+        self.hot_spots = spots;
+        Ok(())
+    }
+
     /// The part of [`Self::emitters`] that has depth.
     pub fn shown_volumes(&self) -> Volumes {
         let light = self.view == View::Light;
@@ -181,7 +192,13 @@ impl Scene {
 
     /// The matter with depth as it is at a time.
     fn volumes_at(&self, when: When, accuracy: Accuracy) -> Volumes {
-        Volumes::new(&self.volumes, &self.hot_spots, self.hole.spin, self.effects, when, accuracy)
+        // A spot that is told to fall from where the hole, as it is now, has no such place is nowhere.
+        let in_chart = |spot: &HotSpot| match &spot.free {
+            Some(body) => Some(HotSpot { free: Some(self.hole.falling_in_chart(body).ok()?), ..*spot }),
+            None => Some(*spot),
+        };
+        let spots: ArrayVec<_, { HotSpot::MOST }> = self.hot_spots.iter().filter_map(in_chart).collect();
+        Volumes::new(&self.volumes, &spots, self.hole.spin, self.effects, when, accuracy)
     }
 
     /// The matter with depth as an observer at `r` sees it who is at rest, or falls inside the horizon, and whose clock

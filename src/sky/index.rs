@@ -7,6 +7,8 @@ use super::catalogue::Star;
 use super::galaxy::{GALACTIC_POLE, crowded_density, crowding};
 use super::shift::{SHIFT_SIZE, ShiftTable};
 use crate::allocate::{collected, filled, with_room};
+use crate::emit::free_spot::TABLE_NODES;
+use crate::emit::hot_spot::HotSpot;
 use crate::error::Result;
 use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
 use glam::DVec3;
@@ -35,11 +37,16 @@ pub const REFERENCE_SOLID_ANGLE: f64 =
 const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
 
 /// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for
-/// `PROFILE_SIZE` entries of the disk's, the shifts of maps, the mean skies, and the stars.
+/// `PROFILE_SIZE` entries of the disk's and for the places of hot spots in free fall, the shifts of maps, the mean
+/// skies, and the stars.
 pub(crate) const MEAN_SKY_TABLES: usize = BLACKBODY_SIZE;
 pub const PROFILE_OFFSET: usize = MEAN_SKY_TABLES + (STAR_LEVELS as usize + 1) * BLACKBODY_SIZE;
 pub const PROFILE_SIZE: usize = 2048;
-pub(crate) const SHIFT_TABLE: usize = PROFILE_OFFSET + PROFILE_SIZE;
+pub const PLACES_OFFSET: usize = PROFILE_OFFSET + PROFILE_SIZE;
+/// Entries of a hot spot in free fall: two for each of its places.
+pub const SPOT_PLACES: usize = 2 * TABLE_NODES;
+pub const PLACES_SIZE: usize = HotSpot::MOST * SPOT_PLACES;
+pub(crate) const SHIFT_TABLE: usize = PLACES_OFFSET + PLACES_SIZE;
 pub(crate) const MEAN_SKY_OFFSET: usize = SHIFT_TABLE + SHIFT_SIZE;
 pub(crate) const STARS_OFFSET: usize = MEAN_SKY_OFFSET + STAR_LEVELS as usize;
 
@@ -163,7 +170,7 @@ impl StarIndex {
     }
 
     /// `light_tables` of the GPU, at the offsets above: blackbodies; the mean skies' tables; room for the disk's
-    /// profile; the shifts of maps; of each level the temperatures that its table and the next one are looked up at
+    /// profile and the places of hot spots; the shifts of maps; of each level the temperatures that its table and the next one are looked up at
     /// (0: no light), the next one's flux limit, and the crowding; of every star flux, temperature, its ln Y, 0; the
     /// lists.
     pub fn light_tables(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
@@ -177,7 +184,7 @@ impl StarIndex {
         let tables = BlackbodyTable::shared().gpu_table().into_iter().chain(self.mean_sky.iter().flat_map(of_mean));
         let stars = self.stars.as_chunks().0.iter().map(|[star, kind]| [star[3], kind[0], kind[1], 0.0]);
         tables
-            .chain(std::iter::repeat_n([0.0; 4], PROFILE_SIZE))
+            .chain(std::iter::repeat_n([0.0; 4], PROFILE_SIZE + PLACES_SIZE))
             .chain(ShiftTable::shared().nodes().iter().copied())
             .chain(self.mean_sky.windows(2).map(pair))
             .chain(stars)

@@ -459,7 +459,9 @@ impl Values {
         scene.preset_volume = self.of_preset.and_then(|own| scene.volumes.get(own).copied());
         scene.hot_spots.clear();
         for (spot, i) in self.hot_spots.iter().zip(0..) {
-            scene.hot_spots.push(HotSpot::try_from(*spot).map_err(at(Section::HotSpot(i)))?);
+            let spot = HotSpot::try_from(*spot).map_err(at(Section::HotSpot(i)))?;
+            spot.free.map_or(Ok(()), |body| scene.hole.check_falling(&body)).map_err(at(Section::HotSpot(i)))?;
+            scene.hot_spots.push(spot);
         }
         scene.sky = self.sky.try_into().map_err(at(Section::Sky))?;
         let film = Film::try_from(self.film).map_err(at(Section::Film))?;

@@ -4,8 +4,9 @@
 
 use super::choices::FROM_UNIFORM;
 use super::sizes;
-use super::variant::{MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
+use super::variant::{MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_FREE_SPOT, SHAPE_SPOT};
 use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_LEVEL};
+use crate::emit::free_spot::TABLE_NODES;
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
 use crate::emit::{
@@ -254,10 +255,13 @@ fn all() -> Vec<(&'static str, String)> {
         SHAPE_HALO: u32 = Shape::Halo;
         SHAPE_JET: u32 = Shape::Jet;
         SHAPE_SPOT: u32 = SHAPE_SPOT;
+        SHAPE_FREE_SPOT: u32 = SHAPE_FREE_SPOT;
+        PLACES_OF_SPOT: u32 = TABLE_NODES;
         MOTION_KEPLERIAN: u32 = MotionCode::Keplerian;
         MOTION_ANGULAR_MOMENTUM: u32 = MotionCode::AngularMomentum;
         MOTION_OUTFLOW: u32 = MotionCode::Outflow;
         MOTION_RIGID: u32 = MotionCode::Rigid;
+        MOTION_FREE: u32 = MotionCode::Free;
         MOST_MATTER: u32 = sizes::MOST_MATTER;
 
         TABLE_WIDTH: u32 = sizes::TABLE_WIDTH;

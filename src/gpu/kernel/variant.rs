@@ -118,6 +118,8 @@ variant! {
 
 /// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.
 pub const SHAPE_SPOT: u32 = 4;
+/// That of spots in free fall.
+pub const SHAPE_FREE_SPOT: u32 = 5;
 
 /// `MOTION_*` of emit/flow.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,6 +129,8 @@ pub enum MotionCode {
     AngularMomentum = 1,
     Rigid = 2,
     Outflow = 3,
+    /// That of a body in free fall: of spots alone.
+    Free = 4,
 }
 
 variant! {

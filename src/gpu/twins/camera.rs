@@ -256,7 +256,7 @@ pub fn group() -> Group {
     twins.push(
         twin(
             "camera/chart",
-            "chart_offsets",
+            "chart_offsets rain_offsets",
             "enter_scene(); let c = begin_local(normalize(in3(1u))).c;
              let offsets = chart_offsets(c, in1(4u)); out2(offsets);",
             |i| {

@@ -89,6 +89,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/volumes", "begin_medium next_part add_part width_at cut_of weight_of add_piece coefficients_at", VOLUMES),
     ("emit/course", "step_course drag_slope delay_slope", VOLUMES),
+    ("emit/free_spot", "spot_centre", VOLUMES),
     ("emit/bake", "bake_texels bake_grain half_bits filament_texel level_variances", BAKED),
     ("emit/layers", "is_dark begin_layers next_step is_power_law slow_at slow_course places_at colour_of", VOLUMES),
     ("emit/layers", "add_alone add_block add_cells", VOLUMES),

@@ -12,6 +12,7 @@ mod clouds;
 mod cube;
 mod excused;
 mod film;
+mod free_spot;
 mod geodesic;
 mod half;
 mod inputs;
@@ -118,6 +119,7 @@ const TABLES: &[fn() -> Group] = &[
     kerr::nodes,
     light::group,
     matter::group,
+    free_spot::group,
     half::group,
     clouds::group,
     sky::group,

@@ -11,7 +11,7 @@ use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::FrameUniform;
-use crate::gpu::frame::uniforms::matter::matter_variant;
+use crate::gpu::frame::uniforms::matter::{matter_variant, places_of};
 use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordMaker, RecordSource, ShadeVariant, TraceVariant};
 use crate::gpu::lens::kerr::KerrContents;
 use crate::gpu::lens::records::RecordSetup;
@@ -98,7 +98,8 @@ impl Planner<'_> {
         let uniform = FrameUniform::new(scene, &emitters, &lens, &settings, record_setup.crossings)?;
         let structure = self.structure(&emitters, scene.hole.spin, &lens);
         let clouds = structure.iter().any(Option::is_some).then(|| CloudsUniform::new(&structure));
-        Ok(Setup { record_setup, variants, samples, uniform, clouds, structure, film, bloom })
+        let places = places_of(&emitters.volumes)?;
+        Ok(Setup { record_setup, variants, samples, uniform, clouds, structure, places, film, bloom })
     }
 
     /// The key of the structure of each volume, as far as the device's textures hold it.

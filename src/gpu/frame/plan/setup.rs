@@ -70,6 +70,8 @@ pub(in crate::gpu) struct Setup {
     pub(in crate::gpu) clouds: Option<CloudsUniform>,
     /// The key of the structure of each volume; `None` for even ones.
     pub(in crate::gpu) structure: Vec<Option<BakeKey>>,
+    /// The entries of `light_tables` from `PLACES_OFFSET` on.
+    pub(in crate::gpu) places: Vec<[f32; 4]>,
     pub(in crate::gpu) film: FilmParams,
     pub(in crate::gpu) bloom: Option<Bloom>,
 }

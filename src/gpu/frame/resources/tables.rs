@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
-//! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
+//! stars), the disk's temperature profile (made anew when the matter's spin changes), and the places
+//! of hot spots in free fall, of each frame. Textures of TABLE_WIDTH
 //! entries a row (shade/shade.wgsl says why). Beside them lie pictures: sky maps, the streaks of the disk, and the
 //! filaments and the structure of matter with depth.
 
@@ -21,20 +22,22 @@ use crate::gpu::kernel::sizes::TABLE_WIDTH;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
 use crate::sky::StarIndex;
-use crate::sky::index::{PROFILE_OFFSET, PROFILE_SIZE};
+use crate::sky::index::{PLACES_OFFSET, PLACES_SIZE, PROFILE_OFFSET, PROFILE_SIZE};
 use std::sync::Arc;
 
 /// Rows that are written at once: 4 MiB.
 const WRITTEN_ROWS: usize = 128;
 
 const PROFILE_ROW: u32 = (PROFILE_OFFSET / TABLE_WIDTH) as u32;
+const PLACES_ROW: u32 = (PLACES_OFFSET / TABLE_WIDTH) as u32;
+const _: () = assert!(PLACES_OFFSET.is_multiple_of(TABLE_WIDTH) && PLACES_SIZE.is_multiple_of(TABLE_WIDTH));
 const _: () = assert!(PROFILE_OFFSET.is_multiple_of(TABLE_WIDTH) && PROFILE_SIZE == TABLE_WIDTH);
 const _: () = assert!(PROFILE_SIZE == TemperatureProfile::SIZE);
 
 pub struct Tables {
     /// The stars that the textures hold.
     stars: Arc<StarIndex>,
-    /// Blackbodies, mean sky, profile, stars: `light_tables` of the shaders.
+    /// Blackbodies, mean sky, profile, places of hot spots, stars: `light_tables` of the shaders.
     light: Texture,
     star_cells: Texture,
     sky_maps: SkyMaps,
@@ -177,6 +180,14 @@ impl Tables {
         }
         self.baked.update(device, &setup.structure)?;
         self.occluder.update(device, scene)?;
+        if !setup.places.is_empty() {
+            // Whole rows: what a last one has left over is no spot's.
+            let rows = setup.places.len().next_multiple_of(TABLE_WIDTH);
+            let mut written = with_room(rows, "the places of hot spots")?;
+            written.extend_from_slice(&setup.places);
+            written.resize(rows, [0.0_f32; 4]);
+            device.write_rows(&self.light, PLACES_ROW, bytemuck::cast_slice(&written))?;
+        }
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());

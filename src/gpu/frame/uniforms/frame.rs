@@ -175,9 +175,12 @@ fn rain_triad(frame: &LocalFrame) -> Vec4 {
     Vec4::from_array(f32s([triad.sin_turn, triad.cos_turn, triad.rho, triad.circumference]))
 }
 
-/// The poles and the first terms of `OffsetSeries`; 0 without one.
-fn offsets(frame: &LocalFrame) -> (Vec4, [Vec4; OFFSET_PAIRS]) {
-    let Some(series) = &frame.offsets else { return (Vec4::ZERO, [Vec4::ZERO; OFFSET_PAIRS]) };
+/// The poles and the first terms of `OffsetSeries`, for rays in Doran's chart or for matter that is told in it; 0
+/// without either.
+fn offsets(frame: &LocalFrame, emitters: &Emitters) -> (Vec4, [Vec4; OFFSET_PAIRS]) {
+    let Some(series) = frame.offsets.as_ref().or(emitters.volumes.offsets.as_ref()) else {
+        return (Vec4::ZERO, [Vec4::ZERO; OFFSET_PAIRS]);
+    };
     let pair = |first: DVec2, second: DVec2| Vec4::from_array(f32s([first.x, first.y, second.x, second.y]));
     let terms = std::array::from_fn(|i| pair(series.terms[2 * i], series.terms[2 * i + 1]));
     (pair(series.poles[0], series.poles[1]), terms)
@@ -233,7 +236,7 @@ impl FrameUniform {
         let [plunge_isco, plunge_energy, plunge_spin_term, plunge_x] = f32s(plunge);
         let occluder = scene.occluder.as_ref();
         let static_observer = frame.static_observer();
-        let (rain_triad, (offset_poles, offset_terms)) = (rain_triad(frame), offsets(frame));
+        let (rain_triad, (offset_poles, offset_terms)) = (rain_triad(frame), offsets(frame, emitters));
         Ok(Self {
             right: lens.axes.x_axis.as_vec3(),
             pixel_angle: lens.mapping.pixel_angle as f32,

@@ -2,14 +2,18 @@
 //! Matter with depth in the layout of the shaders' uniforms: `Matter` of shared/matter.wgsl, field by field; and the
 //! choices that kernels are compiled with for it.
 
+use crate::allocate::collected;
+use crate::emit::free_spot::Centre;
 use crate::emit::glow::Glow;
 use crate::emit::matter::{SpotMatter, VolumeMatter};
 use crate::emit::shape::Reach;
 use crate::emit::volumes::Volumes;
+use crate::error::Result;
 use crate::gpu::kernel::sizes::MOST_MATTER;
-use crate::gpu::kernel::variant::{MatterVariant, MotionCode, SHAPE_SPOT};
+use crate::gpu::kernel::variant::{MatterVariant, MotionCode, SHAPE_FREE_SPOT, SHAPE_SPOT};
 use crate::physics::flow::{Flow, Motion};
 use crate::scene::{Scene, View};
+use crate::sky::index::{PLACES_OFFSET, SPOT_PLACES};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -44,7 +48,7 @@ pub struct MatterUniform {
     brightness: f32,
     least_density: f32,
     tint: Vec3,
-    unused: u32,
+    places: u32,
 }
 
 #[cfg(test)]
@@ -53,7 +57,7 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
     layout!(MatterUniform as "Matter": shape, motion, power_law, size, u_outer, u_inner, most_cosine, sense, inner,
         outer, radius, width, thickness, opening, slope, isco, law, azimuth, angular_velocity, absorption,
         temperature, reference_radius, temperature_slope, log_reference, spectral_index, brightness, least_density,
-        tint)
+        tint, places)
 }
 
 fn motion_of(flow: &Flow) -> (MotionCode, [f64; 2]) {
@@ -113,6 +117,17 @@ impl From<&SpotMatter> for MatterUniform {
     fn from(spot: &SpotMatter) -> Self {
         // Shaders leave out what is less; beyond its cut a spot is nothing.
         let least = f64::from(f32::MIN_POSITIVE);
+        if let Some(centre) = &spot.free {
+            let [begin, end] = centre.times();
+            return Self {
+                motion: MotionCode::Free as u32,
+                law: [begin as f32, (end - begin) as f32],
+                size: spot.size as f32,
+                inner: f32::from(centre.is_denser_at_end()),
+                thickness: 1.0,
+                ..Self::new(SHAPE_FREE_SPOT, &spot.flow, &spot.glow, &spot.reach, least)
+            };
+        }
         Self {
             radius: spot.radius as f32,
             size: spot.size as f32,
@@ -125,14 +140,30 @@ impl From<&SpotMatter> for MatterUniform {
     }
 }
 
+/// The places of spots in free fall as `spot_centre` of emit/free_spot.wgsl reads them: of each its places one by one,
+/// position and share, then rate and time. Errors: OUT_OF_MEMORY.
+pub fn places_of(volumes: &Volumes) -> Result<Vec<[f32; 4]>> {
+    let entries = |(time, centre): (f64, Centre)| {
+        let (position, rate) = (centre.position.as_vec3(), centre.rate.as_vec3());
+        [position.extend(centre.share as f32), rate.extend(time as f32)].map(|entry| entry.to_array())
+    };
+    let tables = volumes.hot_spots.iter().filter_map(|spot| spot.free.as_ref()).flat_map(|centre| centre.table());
+    collected(tables.flat_map(entries), "the places of hot spots")
+}
+
 /// The matter of a frame, volumes first, and how much there is.
 pub fn uniforms_of(volumes: &Volumes) -> ([MatterUniform; MOST_MATTER], u32) {
     let mut all = [MatterUniform::zeroed(); MOST_MATTER];
     let found =
         volumes.volumes.iter().map(MatterUniform::from).chain(volumes.hot_spots.iter().map(MatterUniform::from));
     let mut count = 0;
+    let mut places = PLACES_OFFSET;
     for (uniform, matter) in all.iter_mut().zip(found) {
         *uniform = matter;
+        if matter.shape == SHAPE_FREE_SPOT {
+            uniform.places = places as u32;
+            places += SPOT_PLACES;
+        }
         count += 1;
     }
     (all, count)
