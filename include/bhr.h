@@ -748,17 +748,30 @@ typedef struct BhrVolume {
 /** BhrHotSpot.flags: the light is a blackbody's, not a power law's; without absorption there is none. */
 #define BHR_HOT_SPOT_THERMAL 2u
 
-/** A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
- * being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at
- * dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
+/** BhrHotSpot.flags: the centre is a body in free fall, which position, velocity and time tell; radius, azimuth and
+ * RETROGRADE have no meaning. */
+#define BHR_HOT_SPOT_FREE 4u
+
+/** BhrHotSpot.flags, with FREE: they are told in BHR_CHART_RAIN, else in BHR_CHART_STATIC. */
+#define BHR_HOT_SPOT_RAIN 8u
+
+/** A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
+ * sizes, d being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does,
+ * at dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
  * light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
- * (docs/matter.md). @since 0.2.0 */
+ * (docs/matter.md).
+ *
+ * With BHR_HOT_SPOT_FREE the centre moves on any geodesic, followed both ways for some thousand turns about the hole
+ * and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart at one rain time, and
+ * all of it has the velocity that rain observers see of the centre. While its centre is at more than 200 sizes it is
+ * shown as if it were r / 200. @since 0.2.0 */
 typedef struct BhrHotSpot {
     uint32_t struct_size; /**< sizeof(BhrHotSpot). */
-    uint32_t flags;       /**< Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL. Default 0. */
+    /** Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL | BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN. Default 0. */
+    uint32_t flags;
     /** In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8. */
     double radius;
-    double size;           /**< In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8. */
+    double size;           /**< In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8. */
     double azimuth;        /**< The centre at scene time 0, radians within +-1e6. Default 0. */
     double absorption;     /**< Per M at the centre, 0 .. 1e6. Default 0. */
     double temperature;    /**< Kelvin, 500 .. 1e9. Default 10000. */
@@ -766,6 +779,12 @@ typedef struct BhrHotSpot {
     /** Without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1. */
     double tint[3];
     double brightness; /**< 0 .. 1e6, as BhrVolume.brightness. Default 1. */
+    /** FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
+     * BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0. */
+    double position[3];
+    double velocity[3];
+    /** FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0. */
+    double time;
 } BhrHotSpot;
 
 #define BHR_MAX_HOT_SPOTS 8 /**< Most hot spots of a scene. @since 0.2.0 */
@@ -789,7 +808,9 @@ BHR_NODISCARD BhrStatus bhr_set_volumes(BhrContext *context, const BhrVolume *vo
 BHR_NODISCARD BhrStatus bhr_get_volumes(const BhrContext *context, BhrVolume *volumes, size_t volume_size,
                                         uint32_t capacity, uint32_t *out_count);
 
-/** Sets all hot spots of the scene, at most BHR_MAX_HOT_SPOTS, as bhr_set_volumes does the volumes. @since 0.2.0 */
+/** Sets all hot spots of the scene, at most BHR_MAX_HOT_SPOTS, as bhr_set_volumes does the volumes. One in free fall
+ * is checked against the hole as it is, with bhr_world_line's errors; where a later hole has no such place it is not
+ * shown. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_hot_spots(BhrContext *context, const BhrHotSpot *hot_spots, size_t hot_spot_size,
                                           uint32_t count);
 

@@ -353,14 +353,18 @@ export interface Volume {
 }
 
 /**
- * A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d being
- * the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt = 1 /
- * (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than light, beside the
- * hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters (docs/matter.md).
+ * A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
+ * sizes, d being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at
+ * dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
+ * light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
+ * (docs/matter.md). With "free" the centre moves on any geodesic, followed both ways for some thousand turns about the
+ * hole and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart at one rain time,
+ * and all of it has the velocity that rain observers see of the centre. While its centre is at more than 200 sizes it
+ * is shown as if it were r / 200.
  */
 export interface HotSpot {
     /**
-     * Any of "retrograde" | "thermal". Default 0.
+     * Any of "retrograde" | "thermal" | "free" | BHR_HOT_SPOT_RAIN. Default 0.
      * @default []
      */
     flags: readonly HotSpotFlag[];
@@ -371,8 +375,8 @@ export interface HotSpot {
      */
     radius: number;
     /**
-     * In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8.
-     * @unit M
+     * In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
+     * @range 0.05 .. 250 M
      * @default 0.8
      */
     size: number;
@@ -412,6 +416,23 @@ export interface HotSpot {
      * @default 1
      */
     brightness: number;
+    /**
+     * FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
+     * BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0.
+     * @default [0, 0, 0]
+     */
+    position: Vector;
+    /**
+     * 
+     * @default [0, 0, 0]
+     */
+    velocity: Vector;
+    /**
+     * FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0.
+     * @unit scene length
+     * @default 0
+     */
+    time: number;
 }
 
 /** The sky: everything that lies at infinity. */

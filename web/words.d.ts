@@ -106,7 +106,12 @@ export type HotSpotFlag =
     /** The spot moves towards -ph. */
     | "retrograde"
     /** The light is a blackbody's, not a power law's; without absorption there is none. */
-    | "thermal";
+    | "thermal"
+    /**
+     * The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have no
+     * meaning.
+     */
+    | "free";
 
 /**
  * The way in which light is followed. Frames by different methods differ by less than their errors, which

@@ -371,6 +371,9 @@ enum class HotSpotFlags : std::uint32_t {
     retrograde = BHR_HOT_SPOT_RETROGRADE,
     /// The light is a blackbody's, not a power law's; without absorption there is none.
     thermal = BHR_HOT_SPOT_THERMAL,
+    /// The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have
+    /// no meaning.
+    free = BHR_HOT_SPOT_FREE,
 };
 
 /// Bits of BhrImage.flags.

@@ -151,16 +151,16 @@ struct Volume {
     BhrVolume c() const noexcept { return detail::as_c<BhrVolume>(*this); }
 };
 
-/// BhrHotSpot: A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
-/// sizes, d being the distance from its centre in chart coordinates. Defaults: bhr_hot_spot_init.
+/// BhrHotSpot: A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2),
+/// cut off at 7 sizes, d being the distance from its centre in chart coordinates. Defaults: bhr_hot_spot_init.
 struct HotSpot {
     /// Sizeof(BhrHotSpot).
     std::uint32_t struct_size;
-    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL.
+    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL | BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN.
     HotSpotFlags flags;
     /// In M, 1 .. 1000.
     double radius;
-    /// In M, 0.05 .. radius / 4, and at least radius / 200.
+    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250.
     double size;
     /// The centre at scene time 0, radians within +-1e6.
     double azimuth;
@@ -174,6 +174,13 @@ struct HotSpot {
     Vector tint;
     /// 0 .. 1e6, as BhrVolume.brightness.
     double brightness;
+    /// FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
+    /// BhrBody, from whose fields they may come.
+    Vector position;
+    ///
+    Vector velocity;
+    /// FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time.
+    double time;
 
     HotSpot() noexcept { detail::defaults(*this, bhr_hot_spot_init); }
     BhrHotSpot c() const noexcept { return detail::as_c<BhrHotSpot>(*this); }

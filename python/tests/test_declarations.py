@@ -188,7 +188,9 @@ POSITIONS = {
         "edge_softness"
     ),
     bhr.Film: "tone_map exposure_ev bloom beam_fwhm colour_map",
-    bhr.HotSpot: "radius size azimuth flags absorption temperature spectral_index tint brightness",
+    bhr.HotSpot: (
+        "radius size azimuth flags absorption temperature spectral_index tint brightness position velocity time"
+    ),
     bhr.Quality: "method samples_per_pixel max_steps step tolerance max_disk_order render_scale volume_resolution",
     bhr.Region: "full_width full_height x y",
     bhr.Sky: "flags stars_brightness map_brightness orientation seed",

@@ -69,7 +69,8 @@ fn measured_by(light: ZamoLight, velocity: vec3<f32>) -> f32 {
     let gamma = sqrt((1.0 + velocity.y * velocity.y) / (1.0 - v2));
     let time = gamma * light.frequency;
     let along = velocity.y * light.radial;
-    let square = (1.0 + gamma * gamma * v2) * light.frequency * light.frequency + velocity.y * velocity.y * light.across2;
+    let square = (1.0 + gamma * gamma * v2) * light.frequency * light.frequency
+        + velocity.y * velocity.y * light.across2;
     return select(time - along, square / (time + along), along > 0.0)
         - gamma * (velocity.x * light.azimuthal + velocity.z * light.polar);
 }

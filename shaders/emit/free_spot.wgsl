@@ -88,8 +88,8 @@ fn rain_velocity(a: f32, position: vec3<f32>, rate: vec3<f32>) -> vec3<f32> {
     );
 }
 
-// The velocity (along phi; outwards, of the four-velocity; along theta) that the ZAMO measures of what the rain observer
-// at the same place sees move with `velocity`.
+// The velocity (along phi; outwards, of the four-velocity; along theta) that the ZAMO measures of matter that the rain
+// observer at the same place sees move with `velocity`.
 fn zamo_velocity(at: Place, velocity: vec3<f32>) -> vec3<f32> {
     let fall = sqrt(max((1.0 - at.lapse) * (1.0 + at.lapse), 0.0));
     let gamma = inverseSqrt(1.0 - dot(velocity, velocity));

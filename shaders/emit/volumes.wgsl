@@ -325,7 +325,7 @@ fn coefficients_at(
         let du = quintic_slope(course.u, x) / h;
         var azimuth = 0.0;
         var later = 0.0;
-        // The same in Doran's chart.
+        // Azimuth and time in Doran's chart.
         var rain = vec2<f32>(0.0);
         if STRUCTURE || (SHAPES & ((1u << SHAPE_SPOT) | (1u << SHAPE_FREE_SPOT))) != 0u {
             let offsets = chart_offsets(c, u);

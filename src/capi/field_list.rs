@@ -150,7 +150,7 @@ unsafe impl Described for BhrHotSpot {
         Field {
             name: "flags",
             offset: offset_of!(BhrHotSpot, flags),
-            kind: Kind::Bits(&[("retrograde", 1), ("thermal", 2)]),
+            kind: Kind::Bits(&[("retrograde", 1), ("thermal", 2), ("free", 4)]),
         },
         Field { name: "radius", offset: offset_of!(BhrHotSpot, radius), kind: Kind::Numbers(1) },
         Field { name: "size", offset: offset_of!(BhrHotSpot, size), kind: Kind::Numbers(1) },
@@ -160,6 +160,9 @@ unsafe impl Described for BhrHotSpot {
         Field { name: "spectral_index", offset: offset_of!(BhrHotSpot, spectral_index), kind: Kind::Numbers(1) },
         Field { name: "tint", offset: offset_of!(BhrHotSpot, tint), kind: Kind::Numbers(3) },
         Field { name: "brightness", offset: offset_of!(BhrHotSpot, brightness), kind: Kind::Numbers(1) },
+        Field { name: "position", offset: offset_of!(BhrHotSpot, position), kind: Kind::Numbers(3) },
+        Field { name: "velocity", offset: offset_of!(BhrHotSpot, velocity), kind: Kind::Numbers(3) },
+        Field { name: "time", offset: offset_of!(BhrHotSpot, time), kind: Kind::Numbers(1) },
     ];
 }
 

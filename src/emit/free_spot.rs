@@ -17,11 +17,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Places of the centre in the table of the shaders.
 pub const TABLE_NODES: usize = 512;
-/// Nothing is shown of a spot while its centre is farther out, M.
+/// A spot is not shown while its centre is farther out, M.
 pub const FARTHEST: f64 = 1e4;
 /// Light that is seen at a time left the neighbourhood of r at most r + `EARLIER` before, and r + `LATER` after, it
-/// would have passed the hole: four turns about the hole, the delay of light that passes it closely, and what lingers at
-/// the horizon. M.
+/// would have passed the hole: four turns about the hole, the delay of light that passes it closely, and what lingers
+/// at the horizon. M.
 const EARLIER: f64 = 220.0;
 const LATER: f64 = 40.0;
 /// Where the two clocks are compared: beside the horizon t has no end.

@@ -12,9 +12,10 @@ use super::shape::{Cloud, Reach, Stretch, gaussian};
 use super::volume::{FlowLaw, Shape, Volume};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion};
-use crate::physics::geodesic::wrap_angle;
+use crate::physics::geodesic::{Constants, turned, wrap_angle};
 use crate::physics::orbit::horizon_outer;
 use crate::physics::rain::OffsetSeries;
+use crate::physics::rain_motion::rain_velocity;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -96,6 +97,18 @@ pub struct SpotMatter {
     pub free: Option<Arc<FreeCentre>>,
 }
 
+/// A place outside the horizon where spots in free fall may be.
+#[derive(Clone, Copy, Debug)]
+pub struct FreePlace {
+    pub u: f64,
+    /// cos th.
+    pub cos: f64,
+    /// Boyer and Lindquist's.
+    pub azimuth: f64,
+    /// Time t since `When::time`; `None`: light takes no time, and all is seen where it is at that of the frame.
+    pub later: Option<f64>,
+}
+
 impl VolumeMatter {
     /// About a hole of spin `spin`. `None`: all of it lies inside the horizon.
     pub fn new(volume: &Volume, spin: f64, when: &When, accuracy: Accuracy) -> Option<Self> {
@@ -171,8 +184,8 @@ impl VolumeMatter {
 }
 
 impl SpotMatter {
-    /// About a hole of spin `spin`, as a frame shows it. `series`: the offsets of Doran's chart, for spots in free fall.
-    /// `None`: its centre is nowhere at the time.
+    /// About a hole of spin `spin`, as a frame shows it. `series`: the offsets of Doran's chart, for spots in free
+    /// fall. `None`: its centre is nowhere at the time.
     pub fn new(spot: &HotSpot, spin: f64, when: &When, series: Option<&OffsetSeries>) -> Option<Self> {
         let sense = if spot.retrograde { -1.0 } else { 1.0 };
         let glow = Glow {
@@ -228,6 +241,17 @@ impl SpotMatter {
         let half = (0.5 * from).sin();
         let square = (axis - self.radius).powi(2) + 4.0 * axis * self.radius * half * half + (r * cos).powi(2);
         self.density_at(square)
+    }
+
+    /// Of one in free fall: the density at a place, and the velocity of the matter as the rain observer there sees it.
+    /// `series`: the offsets of Doran's chart. `None`: there is none of it.
+    pub fn free_at(&self, c: &Constants, series: &OffsetSeries, there: &FreePlace) -> Option<(f64, DVec3)> {
+        let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);
+        let centre = self.free.as_ref()?.at(there.later.map_or(0.0, |later| later + offsets.time))?;
+        let sin = ((1.0 - there.cos) * (1.0 + there.cos)).max(0.0).sqrt();
+        let place = turned(DVec3::new(sin, 0.0, there.cos) / there.u, there.azimuth + offsets.azimuth);
+        let density = self.free_density(place, &centre);
+        (density > 0.0).then(|| (density, rain_velocity(c.a, centre.position, centre.rate)))
     }
 
     /// The density at a place of Doran's chart, of one in free fall.

@@ -17,20 +17,19 @@ use super::effects::Effects;
 use super::glow::{Coefficients, Glow};
 use super::hot_spot::HotSpot;
 use super::layers::{BLOCK_LAYERS, BLOCK_ROUNDING, LEAST_SEEN, Layers};
-use super::matter::{Accuracy, BENDS, SpotMatter, VolumeMatter};
+use super::matter::{Accuracy, BENDS, FreePlace, SpotMatter, VolumeMatter};
 use super::medium::Medium;
 use super::shape::{Reach, Stretch};
 use super::volume::{Shape, Volume};
 use crate::error::Result;
 use crate::physics::flow::{Place, Velocity, ZamoLight};
-use crate::physics::geodesic::{Constants, State, turned};
+use crate::physics::geodesic::{Constants, State};
 use crate::physics::observer::StaticObserver;
 use crate::physics::quadrature::{GAUSS_NODES, GAUSS_WEIGHTS};
 use crate::physics::rain::OffsetSeries;
-use crate::physics::rain_motion::{rain_velocity, zamo_velocity};
+use crate::physics::rain_motion::zamo_velocity;
 use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
-use glam::DVec3;
 use std::sync::Arc;
 
 /// The greatest changes over a piece: of ln r, and of the angle about the hole, rad.
@@ -384,20 +383,12 @@ impl Volumes {
         }
         for spot in &self.hot_spots {
             let (azimuth, later) = moment();
-            if let (Some(free), Some(series)) = (&spot.free, &self.offsets) {
-                let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);
-                let Some(centre) = free.at(if self.when.delayed { later + offsets.time } else { 0.0 }) else {
-                    continue;
-                };
-                let place = turned(
-                    DVec3::new(((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt(), 0.0, cos) * r,
-                    azimuth + offsets.azimuth,
-                );
-                let density = spot.free_density(place, &centre);
-                if density > 0.0 {
+            if spot.free.is_some() {
+                let Some(series) = &self.offsets else { continue };
+                let there = FreePlace { u: there.u, cos, azimuth, later: self.when.delayed.then_some(later) };
+                if let Some((density, seen)) = spot.free_at(c, series, &there) {
                     let (at, light) = measure();
-                    let velocity = zamo_velocity(&at, rain_velocity(c.a, centre.position, centre.rate));
-                    add(&light, velocity, &spot.glow, density, 1.0);
+                    add(&light, zamo_velocity(&at, seen), &spot.glow, density, 1.0);
                 }
                 continue;
             }

@@ -86,8 +86,8 @@ pub struct ZamoLight {
 
 impl ZamoLight {
     /// The light of the ray `c` where u' = `du` and (cos th)' = `turn`: rays are traced backward, so that the light's
-    /// own momentum has p_r = u' / D with D = Delta / r^2, and p_th = (cos th)' / sin th. Across the radius it has ((Q +
-    /// (L - a E)^2) - (a E sin th - L / sin th)^2) / Sg (Carter 1968), and the part along ph besides.
+    /// own momentum has p_r = u' / D with D = Delta / r^2, and p_th = (cos th)' / sin th. Across the radius it has
+    /// ((Q + (L - a E)^2) - (a E sin th - L / sin th)^2) / Sg (Carter 1968), and the part along ph besides.
     pub fn new(c: &Constants, at: &Place, du: f64, turn: f64) -> Self {
         let l2 = c.angular_momentum * c.angular_momentum;
         let sin = at.sin2.sqrt();
@@ -105,8 +105,9 @@ impl ZamoLight {
 
     /// -p.U, the frequency that matter with `velocity` measures.
     ///
-    /// By definition that is gamma nu - u_r p_r - gamma v.p, with p across the radius. Where matter and light both move inwards, or both
-    /// outwards, the first two terms are close to each other near the horizon, and (with nu^2 = p_r^2 + p_across^2)
+    /// By definition that is gamma nu - u_r p_r - gamma v.p, with p across the radius. Where matter and light both
+    /// move inwards, or both outwards, the first two terms are close to each other near the horizon, and (with nu^2 =
+    /// p_r^2 + p_across^2)
     ///
     /// ```text
     /// gamma nu - u_r p_r = ((1 + gamma^2 v^2) nu^2 + u_r^2 p_across^2) / (gamma nu + u_r p_r)

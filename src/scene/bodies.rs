@@ -30,7 +30,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// The same for the settings of hot spots, which know no charts.
+    /// This body in the settings of hot spots, which know no charts.
     pub fn falling(&self) -> world_line::Body {
         let Self { chart, position, velocity, time } = *self;
         world_line::Body { clock: chart.clock(), position, velocity, time }

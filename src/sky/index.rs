@@ -170,9 +170,9 @@ impl StarIndex {
     }
 
     /// `light_tables` of the GPU, at the offsets above: blackbodies; the mean skies' tables; room for the disk's
-    /// profile and the places of hot spots; the shifts of maps; of each level the temperatures that its table and the next one are looked up at
-    /// (0: no light), the next one's flux limit, and the crowding; of every star flux, temperature, its ln Y, 0; the
-    /// lists.
+    /// profile and the places of hot spots; the shifts of maps; of each level the temperatures that its table and the
+    /// next one are looked up at (0: no light), the next one's flux limit, and the crowding; of every star flux,
+    /// temperature, its ln Y, 0; the lists.
     pub fn light_tables(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
         let of_mean = |mean: &MeanSky| match &mean.light {
             Some((_, table)) => table.gpu_table(),

@@ -226,9 +226,80 @@ static void flags_and_kinds(Watch *watch, BhrContext *context) {
         volume.flags = 4u << i;
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_volumes(context, &volume, sizeof volume, 1));
         BhrHotSpot spot = a_spot();
-        spot.flags = 4u << i;
+        spot.flags = 16u << i;
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_hot_spots(context, &spot, sizeof spot, 1));
     }
+}
+
+/* A spot that falls from (9, 0, 2) M, the context's hole being of 1 M. */
+static BhrHotSpot a_free_spot(void) {
+    BhrHotSpot spot = a_spot();
+    spot.flags = BHR_HOT_SPOT_FREE;
+    spot.position[0] = 9.0, spot.position[2] = 2.0;
+    spot.velocity[1] = 0.3, spot.velocity[2] = 0.2;
+    return spot;
+}
+
+/* Spots in free fall: places, velocities and times that cannot be, others at the extremes, and what is read again. */
+static void free_spots(Watch *watch, BhrContext *context) {
+    const double no_number[] = {NAN, INFINITY, -INFINITY};
+    const struct {
+        size_t      offset;
+        const char *name;
+    } fields[] = {
+        {offsetof(BhrHotSpot, position), "position"},
+        {offsetof(BhrHotSpot, velocity) + 2 * sizeof(double), "velocity"},
+        {offsetof(BhrHotSpot, time), "time"},
+    };
+    for (size_t i = 0; i < COUNT_OF(fields); i++) {
+        for (size_t k = 0; k < COUNT_OF(no_number); k++) {
+            BhrHotSpot spot = a_free_spot();
+            put(&spot, fields[i].offset, no_number[k]);
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, fields[i].name,
+                          bhr_set_hot_spots(context, &spot, sizeof spot, 1));
+            /* They mean nothing without FREE. */
+            spot.flags = 0;
+            CHECK_OK(bhr_set_hot_spots(context, &spot, sizeof spot, 1));
+            CHECK_OK(bhr_set_hot_spots(context, watch->hot_spots, sizeof watch->hot_spots[0], watch->hot_spot_count));
+        }
+    }
+    BhrHotSpot spots[2] = {a_free_spot(), a_free_spot()};
+    spots[1].velocity[0] = 1.0, spots[1].velocity[1] = spots[1].velocity[2] = 0.0;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "below 1", bhr_set_hot_spots(context, spots, sizeof spots[0], 2));
+    spots[1] = a_free_spot();
+    spots[1].position[0] = spots[1].position[2] = 0.0;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "hot_spots[1]",
+                  bhr_set_hot_spots(context, spots, sizeof spots[0], 2));
+    spots[1].position[0] = 1e300;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "hot_spots[1]",
+                  bhr_set_hot_spots(context, spots, sizeof spots[0], 2));
+    /* Inside the horizon, where only rain observers are. */
+    spots[1] = a_free_spot();
+    spots[1].position[0] = 1.2, spots[1].position[2] = 0.0;
+    CHECK_REFUSED(watch, BHR_ERROR_UNSUPPORTED, "r+", bhr_set_hot_spots(context, spots, sizeof spots[0], 2));
+    spots[1].flags |= BHR_HOT_SPOT_RAIN;
+    CHECK_OK(bhr_set_hot_spots(context, spots, sizeof spots[0], 2));
+    finite_frame(context, "a spot that begins inside", 0);
+
+    const double times[] = {0.0, 40.0, -3000.0, 1e9, -1e300};
+    /* The last two are beyond what is followed of a line, which takes seconds. */
+    for (size_t i = 0; i < (check_runs_all() ? COUNT_OF(times) : 3); i++) {
+        CHECK_OK(bhr_set_time(context, times[i]));
+        finite_frame(context, "the time of free spots", i);
+        CHECK_OK(bhr_set_effects(context, BHR_EFFECT_ALL & ~BHR_EFFECT_LIGHT_DELAY));
+        finite_frame(context, "free spots in fast light", i);
+        CHECK_OK(bhr_set_effects(context, BHR_EFFECT_ALL));
+    }
+    CHECK_OK(bhr_set_time(context, 0.0));
+    BhrHotSpot read[2];
+    uint32_t   count = 0;
+    CHECK_OK(bhr_get_hot_spots(context, read, sizeof read[0], 2, &count));
+    CHECK(count == 2 && read[1].flags == (BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN) && read[1].position[0] == 1.2 &&
+              read[0].velocity[1] == 0.3 && read[0].time == 0.0,
+          "%u spots, flags %u", count, read[1].flags);
+    /* A host whose struct ends before them has circles. */
+    CHECK_OK(bhr_get_hot_spots(context, read, FIRST_HOT_SPOT, 2, &count));
+    CHECK_OK(bhr_set_hot_spots(context, watch->hot_spots, sizeof watch->hot_spots[0], watch->hot_spot_count));
 }
 
 static void arrays(Watch *watch, BhrContext *context) {
@@ -465,6 +536,7 @@ int main(int argc, char **argv) {
     static Watch     watch;
     watch_unusual_scene(&watch, context);
     inner_edges(&watch, backend);
+    free_spots(&watch, context);
     arrays(&watch, context);
     shorter_struct(context);
     CHECK_OK(bhr_set_volumes(context, watch.volumes, sizeof watch.volumes[0], watch.volume_count));

@@ -135,7 +135,8 @@ fn layouts_hold_in_rust() {
             angular_momentum, speed, turbulence, clumping, heating, seed
         }
         volume::BhrHotSpot {
-            struct_size, flags, radius, size, azimuth, absorption, temperature, spectral_index, tint, brightness
+            struct_size, flags, radius, size, azimuth, absorption, temperature, spectral_index, tint, brightness,
+            position, velocity, time
         }
         body::BhrBody { struct_size, chart, position, velocity, time, proper_time, end, reserved }
         transfer::BhrTransfer { fate, reserved, intensity, optical_depth, light }

@@ -7,8 +7,8 @@ use crate::random::{Random, count_from, runs_all};
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
 use bhr::scene::{
-    Camera, Disk, Effects, Fate, FlowLaw, HotSpot, LensTables, Motion, Projection, Ray, Scene, Shape, Sky, Transfer,
-    View, Volume,
+    Body, Camera, Chart, Disk, Effects, Fate, FlowLaw, HotSpot, LensTables, Motion, Projection, Ray, Scene, Shape, Sky,
+    Transfer, View, Volume,
 };
 use glam::DVec3;
 
@@ -306,7 +306,14 @@ fn any_volume(random: &mut Random) -> Volume {
     }
 }
 
-fn any_spot(random: &mut Random) -> HotSpot {
+/// `time`: that of the scene, which free spots were near lately.
+fn any_spot(random: &mut Random, time: f64) -> HotSpot {
+    let falling = Body {
+        chart: random.pick(&[Chart::Static, Chart::Rain]),
+        position: random.direction() * random.log_range(2.1, 300.0),
+        velocity: random.direction() * random.range(0.0, 0.999),
+        time: time + random.range(-300.0, 300.0),
+    };
     let radius = random.log_range(1.0, 1e3);
     HotSpot {
         retrograde: random.next() < 0.5,
@@ -319,6 +326,7 @@ fn any_spot(random: &mut Random) -> HotSpot {
         spectral_index: random.range(-4.0, 4.0),
         tint: [1.0; 3],
         brightness: random.pick(&[0.0, 1.0, 1e6]),
+        free: (random.next() < 0.3).then(|| falling.falling()),
     }
 }
 
@@ -333,10 +341,10 @@ fn random_rays_through_random_matter_give_numbers() {
         let spin = random.pick(&[0.0, 0.5, -0.9, 0.998, -0.998]);
         let mut scene = bare(spin, camera(30.0, 10.0), &[]);
         (0..1 + random.0 % 4).for_each(|_| scene.volumes.push(any_volume(&mut random)));
-        (0..random.0 % 4).for_each(|_| scene.hot_spots.push(any_spot(&mut random)));
+        scene.time = random.range(-1e9, 1e9);
+        (0..random.0 % 4).for_each(|_| scene.hot_spots.push(any_spot(&mut random, scene.time)));
         scene.hot_spots.iter().for_each(|spot| spot.check().unwrap_or_else(|e| panic!("{e}")));
         scene.volumes.iter().for_each(|volume| volume.check().unwrap_or_else(|e| panic!("{e}")));
-        scene.time = random.range(-1e9, 1e9);
         scene.effects = Effects(random.pick(&[Effects::ALL, 0, 3, 5, 8]));
         renderer.scene = scene;
         let least = if spin == 0.0 { 0.5 } else { 1.08 + (1.0 - spin * spin).sqrt() };

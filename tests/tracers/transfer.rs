@@ -199,7 +199,7 @@ impl Thermal<'_> {
             return [Coefficients::default(); 2];
         }
         let at = place_of(c, there);
-        let nu = flow.frequency(c, &at, &ZamoLight::new(c, &at, there.du)) / c.nu_local;
+        let nu = flow.frequency(c, &at, &ZamoLight::new(c, &at, there.du, there.dn.z)) / c.nu_local;
         let temperature = glow.temperature * (at.r / glow.reference_radius).powf(-glow.temperature_slope);
         let seen = temperature * self.frequency_ratio / nu;
         let absorption = glow.absorption * cloud.density(at.r, at.cos) * nu;

@@ -367,6 +367,9 @@ class HotSpotFlags(enum.IntFlag):
     RETROGRADE = 1
     #: The light is a blackbody's, not a power law's; without absorption there is none.
     THERMAL = 2
+    #: The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have no
+    #: meaning.
+    FREE = 4
 
 
 class SkyFlags(enum.IntFlag):

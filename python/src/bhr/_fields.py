@@ -202,21 +202,25 @@ class Volume(Struct):
 
 @dataclasses.dataclass(frozen=True)
 class HotSpot(Struct):
-    """A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
-    being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt
-    = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than light,
-    beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters (docs/matter.md)."""
+    """A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at
+    7 sizes, d being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does,
+    at dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
+    light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
+    (docs/matter.md). With HotSpotFlags.FREE the centre moves on any geodesic, followed both ways for some thousand
+    turns about the hole and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart
+    at one rain time, and all of it has the velocity that rain observers see of the centre. While its centre is at more
+    than 200 sizes it is shown as if it were r / 200."""
 
     c_name: ClassVar[str] = "BhrHotSpot"
     c_enums = {"flags": HotSpotFlags}
 
     #: In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
     radius: float = 8.0
-    #: In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8.
+    #: In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
     size: float = 0.8
     #: The centre at scene time 0, radians within +-1e6. Default 0.
     azimuth: float = 0.0
-    #: Any of HotSpotFlags.RETROGRADE | HotSpotFlags.THERMAL. Default 0.
+    #: Any of HotSpotFlags.RETROGRADE | HotSpotFlags.THERMAL | HotSpotFlags.FREE | BHR_HOT_SPOT_RAIN. Default 0.
     flags: Named[HotSpotFlags, str] = named(HotSpotFlags(0))
     #: Per M at the centre, 0 .. 1e6. Default 0.
     absorption: float = 0.0
@@ -228,6 +232,13 @@ class HotSpot(Struct):
     tint: Vector = (1.0, 1.0, 1.0)
     #: 0 .. 1e6, as BhrVolume.brightness. Default 1.
     brightness: float = 1.0
+    #: FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
+    #: BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0.
+    position: Vector = (0.0, 0.0, 0.0)
+    #:
+    velocity: Vector = (0.0, 0.0, 0.0)
+    #: FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0.
+    time: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
