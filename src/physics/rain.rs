@@ -70,7 +70,10 @@ pub fn offsets(a: f64, u: f64) -> Offsets {
 /// Terms of the polynomials of `OffsetSeries`.
 pub const OFFSET_TERMS: usize = 24;
 
-/// `offsets` of a hole of spin |a| < 1 for frames, which ask for them at many places: with poles of D apart
+/// Largest |a| of `OffsetSeries`: beyond it the poles of D come too near to each other.
+pub const MOST_SERIES_SPIN: f64 = 0.9999;
+
+/// `offsets` of a hole of spin |a| <= 0.9999 for frames, which ask for them at many places: with poles of D apart
 ///
 /// ```text
 /// 1 / D = (r+ / (1 - r+ u) - r- / (1 - r- u)) / (r+ - r-)

@@ -129,6 +129,15 @@ fn rays_of_images_pass_their_points_with_spin() {
     assert!(lost * 10_000 <= cases.len(), "{lost} lost");
 }
 
+/// About the fastest holes, of which there are rays but no frames.
+#[test]
+fn images_about_the_fastest_holes() {
+    let cases = cases(count(10_000), &[1.0, -1.0, 1.0 - 1e-6, 1e-12 - 1.0], 1, [2.0, 1.0], 6);
+    let [lost, missed] = lost_and_missed(&cases);
+    assert_eq!(missed, 0);
+    assert!(lost * 500 <= cases.len(), "{lost} lost");
+}
+
 /// Higher orders, where caustics are wide, and places beside the horizon.
 #[test]
 fn images_that_are_hard_to_find() {
