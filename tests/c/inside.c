@@ -166,11 +166,6 @@ static void rays(BhrContext *context) {
     CHECK_OK(bhr_camera_ray(context, 32, 32, 16.0, 16.0, &ray));
     CHECK_OK(bhr_trace_rays(context, &ray, sizeof ray, 1, &hit, sizeof hit));
     CHECK(ray.frequency_ratio == 1.0 && hit.fate != BHR_FATE_INVALID, "%g", ray.frequency_ratio);
-    const double      point[3] = {9.0, 2.0, 3.0};
-    BhrProjectedPoint projected;
-    BHR_INIT(projected);
-    CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "bhr_project_point",
-                bhr_project_point(context, 32, 32, point, 0, &projected));
     /* In STATIC there is no place. */
     camera.chart = BHR_CHART_STATIC;
     CHECK_OK(bhr_set_camera(context, &camera));
@@ -197,6 +192,91 @@ static void points(BhrContext *context) {
     CHECK(fabs(found[0].x - found[1].x) < 1e-6 && fabs(found[0].y - found[1].y) < 1e-6, "(%g, %g) and (%g, %g)",
           found[0].x, found[0].y, found[1].x, found[1].y);
     CHECK(fabs(found[0].redshift / found[1].redshift - 1.0) < 1e-8, "%g", found[1].redshift);
+}
+
+/* How near a ray's path comes to a point; parabolas through three points each. */
+static double nearest(BhrContext *context, const BhrRay *ray, const double point[3]) {
+    enum { COUNT = 65536 };
+    static double path[COUNT][4];
+    uint32_t      count = 0, best = 1;
+    CHECK_OK(bhr_trace_path(context, ray, COUNT, &path[0][0], &count));
+    for (uint32_t i = 1; i + 1 < count; i++) {
+        best = apart(path[i], point) < apart(path[best], point) ? i : best;
+    }
+    double low = -1.0, high = 1.0, least = 0.0;
+    for (int i = 0; i < 80; i++) {
+        double far[2];
+        for (int side = 0; side < 2; side++) {
+            const double x = side == 0 ? low + 0.382 * (high - low) : high - 0.382 * (high - low);
+            double       place[3];
+            for (int k = 0; k < 3; k++) {
+                const double a = path[best - 1][k], b = path[best][k], c = path[best + 1][k];
+                place[k] = b + 0.5 * x * (c - a) + 0.5 * x * x * (a + c - 2.0 * b);
+            }
+            far[side] = apart(place, point);
+        }
+        if (far[0] < far[1]) {
+            high = high - 0.382 * (high - low);
+        } else {
+            low = low + 0.382 * (high - low);
+        }
+        least = fmin(far[0], far[1]);
+    }
+    return least;
+}
+
+/* From inside a spinning hole the rays that are told pass their points; the pictures of cameras on both sides of the
+ * horizon have them at the same places. */
+static void points_inside(BhrContext *context) {
+    static const double points[][3] = {{9.0, 2.0, 3.0}, {-6.0, 7.0, -1.0}, {-20.0, -30.0, 0.0}, {0.0, 2.5, 1.5}};
+    static const double radii[] = {0.6, 0.9, 1.3, 1.43, 1.44, 1.6};
+    const double        outer = 1.0 + sqrt(1.0 - SPIN * SPIN);
+    spin_up(context, SPIN);
+    for (size_t i = 0; i < COUNT_OF(points); i++) {
+        double point[3];
+        for (int k = 0; k < 3; k++) {
+            point[k] = points[i][k] * MASS;
+        }
+        for (size_t j = 0; j < COUNT_OF(radii); j++) {
+            for (uint32_t order = 0; order < 2; order++) {
+                BhrCamera camera = camera_at(BHR_MOTION_VELOCITY, radii[j]);
+                camera.velocity[0] = 0.1, camera.velocity[2] = -0.2;
+                CHECK_OK(bhr_set_camera(context, &camera));
+                BhrProjectedPoint found;
+                BHR_INIT(found);
+                CHECK_OK(bhr_project_point(context, 64, 64, point, order, &found));
+                CHECK(found.found == 1 && found.redshift > 0.0 && found.delay > 0.0 && isfinite(found.magnification),
+                      "point %u from r = %g M: found %u", (unsigned)i, radii[j], found.found);
+                const double miss = nearest(context, &found.ray, point) / apart(point, camera.position);
+                CHECK(miss < 1e-8, "point %u, order %u from r = %g M: missed by %g", (unsigned)i, (unsigned)order,
+                      radii[j], miss);
+                if (found.on_screen) {
+                    BhrRay ray;
+                    CHECK_OK(bhr_camera_ray(context, 64, 64, found.x, found.y, &ray));
+                    CHECK(apart(ray.direction, found.ray.direction) < 1e-9, "%g",
+                          apart(ray.direction, found.ray.direction));
+                }
+            }
+        }
+        BhrProjectedPoint both[2];
+        for (int side = 0; side < 2; side++) {
+            BhrCamera camera = camera_at(BHR_MOTION_FREE_FALL, outer * (side == 0 ? 1.0 + 1e-6 : 1.0 - 1e-6));
+            camera.projection = BHR_PROJECTION_EQUIRECT;
+            CHECK_OK(bhr_set_camera(context, &camera));
+            BHR_INIT(both[side]);
+            CHECK_OK(bhr_project_point(context, 360, 180, point, 0, &both[side]));
+        }
+        CHECK(hypot(both[0].x - both[1].x, both[0].y - both[1].y) < 1e-3 &&
+                  fabs(both[0].redshift / both[1].redshift - 1.0) < 1e-4 &&
+                  fabs(both[0].delay / both[1].delay - 1.0) < 1e-4,
+              "(%g, %g) and (%g, %g)", both[0].x, both[0].y, both[1].x, both[1].y);
+    }
+    /* A point inside has no image that is looked for. */
+    const double      within[3] = {0.5 * MASS, 0.5 * MASS, 0.5 * MASS};
+    BhrProjectedPoint found;
+    BHR_INIT(found);
+    CHECK_OK(bhr_project_point(context, 64, 64, within, 0, &found));
+    CHECK(found.found == 0 && found.lost == 0, "%u, %u", found.found, found.lost);
 }
 
 /* ---- spins of 1 ---- */
@@ -429,6 +509,7 @@ int main(int argc, char **argv) {
     parallel_axes(context);
     rays(context);
     points(context);
+    points_inside(context);
     fast_holes(context);
     impossible(context);
     bhr_context_destroy(context);
