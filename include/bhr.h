@@ -361,7 +361,8 @@ void bhr_context_destroy(BhrContext *context);
 /** Sets the mass M in scene lengths, finite and above 0. Default 1. */
 BHR_NODISCARD BhrStatus bhr_set_mass(BhrContext *context, double mass);
 
-/** Sets the spin a / M, -0.9999 .. 0.9999; below 0 the hole turns towards -ph. Default 0. */
+/** Sets the spin a / M, -1 .. 1; below 0 the hole turns towards -ph. Default 0. Beyond +-0.9999 frames
+ * and bhr_transfer_rays are UNSUPPORTED; rays, points, bodies and cameras are not. */
 BHR_NODISCARD BhrStatus bhr_set_spin(BhrContext *context, double spin);
 
 /** Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. */

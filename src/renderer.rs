@@ -305,6 +305,7 @@ impl Renderer {
     pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<ShowOutcome> {
         self.check_device()?;
         self.scene.check_one_eye("a window")?;
+        self.scene.hole.check_shown("a frame")?;
         self.scene.observer()?;
         if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
             return Err(Error::argument("surface was made by another context"));
@@ -321,8 +322,8 @@ impl Renderer {
         self.stats.last()
     }
 
-    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a region with bloom or
-    /// a beam; a format that does not go with the view.
+    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a spin beyond those of
+    /// frames; a region with bloom or a beam; a format that does not go with the view.
     fn request(
         &self,
         format: PixelFormat,
@@ -333,6 +334,7 @@ impl Renderer {
         let (set, strips) = (region.is_some(), self.scene.camera.is_omnistereo());
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
+        self.scene.hole.check_shown("a frame")?;
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
         if blooms && (set || strips) && !(self.scene.film.glare_is_optional && self.scene.film.beam_fwhm == 0.0) {
             let film = &self.scene.film;
@@ -370,9 +372,9 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom or a beam with a
-    /// region; CANCELLED when `progress` returns false (tiles not yet begun are untouched); whatever the device
-    /// reports.
+    /// UNSUPPORTED for a spin beyond those of frames; INVALID_STATE where the camera's motion cannot be, for a cube of
+    /// another shape, or for bloom or a beam with a region; CANCELLED when `progress` returns false (tiles not yet
+    /// begun are untouched); whatever the device reports.
     pub fn render(
         &mut self,
         target: &mut ImageMut<'_>,
@@ -421,6 +423,7 @@ impl Renderer {
 
     /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].
     pub fn prepare_window(&mut self, size: [u32; 2], progress: &mut Progress<'_>) -> Result<()> {
+        self.scene.hole.check_shown("a frame")?;
         let window = frame_request(&self.scene, size, PixelFormat::Rgba8Srgb);
         self.tracer.lock().prepare(&self.scene, &window, Some(&window), progress)
     }
@@ -473,6 +476,7 @@ impl Renderer {
     pub fn ray_records(&mut self, width: u32, height: u32) -> Result<Vec<Record>> {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         region.check()?;
+        self.scene.hole.check_shown("a ray record")?;
         let request = FrameRequest { width, height, region, format: PixelFormat::Rgba32F, transparent: false };
         match &mut *self.tracer.lock() {
             Tracer::Cpu(t) => t.ray_records(&self.scene, &request),
@@ -490,10 +494,16 @@ impl Renderer {
         }
     }
 
+    /// Errors: UNSUPPORTED for a spin beyond those that matter with depth is known about.
+    pub fn check_transfer(&self) -> Result<()> {
+        self.scene.hole.check_shown("matter along rays")
+    }
+
     /// The matter with depth along `rays`, thin disk and sky left out; `found` is as long. Always in f64 on the CPU: on
     /// the CPU tracer's threads, else on this one. A ray that is not valid becomes `Fate::Invalid`. Errors:
-    /// OUT_OF_MEMORY.
+    /// UNSUPPORTED for a spin beyond those of frames; OUT_OF_MEMORY.
     pub fn transfer_rays(&mut self, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
+        self.check_transfer()?;
         if let Tracer::Cpu(tracer) = &mut *self.tracer.lock() {
             return tracer.transfer_rays(&self.scene, rays, found);
         }

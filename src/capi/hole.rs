@@ -22,7 +22,8 @@ pub unsafe extern "C" fn bhr_set_mass(context: *mut BhrContext, mass: f64) -> Bh
     }
 }
 
-/// Sets the spin a / M, -0.9999 .. 0.9999; below 0 the hole turns towards -ph. Default 0.
+/// Sets the spin a / M, -1 .. 1; below 0 the hole turns towards -ph. Default 0. Beyond +-0.9999 frames
+/// and bhr_transfer_rays are UNSUPPORTED; rays, points, bodies and cameras are not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_spin(context: *mut BhrContext, spin: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

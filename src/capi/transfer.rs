@@ -96,6 +96,9 @@ pub unsafe extern "C" fn bhr_transfer_rays(
         on_context("bhr_transfer_rays", context, |state| {
             let from = Array::new(rays.cast_mut().cast(), ray_size, size_of::<BhrRay>(), count, ["rays", "ray_size"])?;
             let to = Array::new(out.cast(), out_size, TRANSFER_SIZES[0], count, ["out", "out_size"])?;
+            if count > 0 {
+                state.renderer.check_transfer()?;
+            }
             let result = transfer_all(&mut state.renderer, from, to, count);
             if result.is_err() {
                 to.clear(count);

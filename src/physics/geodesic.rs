@@ -239,6 +239,15 @@ impl Constants {
         -self.a * (self.advanced_rate(u, du) - self.energy + du * rest)
     }
 
+    /// d(azimuth of the chart) / d tau beyond what N turns, in whichever chart the clock has.
+    pub fn turning_rate(&self, u: f64, du: f64) -> f64 {
+        if self.clock == Clock::Coordinate || self.a == 0.0 {
+            return self.drag_rate(u);
+        }
+        // The slope of `rain_drag_boundary`.
+        self.rain_drag_rate(u, du) + self.a * du / (1.0 + (2.0 * u.max(0.0)).sqrt())
+    }
+
     /// The closed-form part of the drag in Doran's chart, the integral of a du / (1 + w).
     #[inline(always)]
     pub fn rain_drag_boundary(&self, u: f64) -> f64 {

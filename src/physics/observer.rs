@@ -23,7 +23,7 @@
 
 use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State, rain_offset, turned};
 use super::orbit::{circular_orbit, horizon_inner, horizon_outer, innermost_radius, zamo_omega};
-use super::rain::{OffsetSeries, offsets};
+use super::rain::{MOST_SERIES_SPIN, OffsetSeries, offsets};
 use crate::error::{Error, Number, Result};
 use glam::{DMat3, DVec3};
 
@@ -241,9 +241,11 @@ impl LocalFrame {
         Self { rain: false, lapse: self.zamo_lapse(), ..there }
     }
 
-    /// This rain frame for many rays, that tell azimuths and times of matter by the series of the chart's offsets.
+    /// This rain frame for many rays, that tell azimuths and times of matter by the series of the chart's offsets where
+    /// there is one: without spin none is needed.
     pub fn with_offset_series(self) -> Self {
-        Self { offsets: (self.a != 0.0).then(|| OffsetSeries::new(self.a)), ..self }
+        let has_series = self.a != 0.0 && self.a.abs() <= MOST_SERIES_SPIN;
+        Self { offsets: has_series.then(|| OffsetSeries::new(self.a)), ..self }
     }
 
     /// Rain time less t here, M, by the integral; outside the horizon.

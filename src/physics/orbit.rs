@@ -32,7 +32,7 @@ pub fn photon_orbit(a: f64) -> f64 {
 
 /// Innermost stable circular orbit of matter moving towards +ph; towards -ph with -a. (Eq. 2.21.)
 pub fn isco(a: f64) -> f64 {
-    let z1 = 1.0 + (1.0 - a * a).cbrt() * ((1.0 + a).cbrt() + (1.0 - a).cbrt());
+    let z1 = 1.0 + ((1.0 - a) * (1.0 + a)).cbrt() * ((1.0 + a).cbrt() + (1.0 - a).cbrt());
     let z2 = (3.0 * a * a + z1 * z1).sqrt();
     let root = ((3.0 - z1) * (3.0 + z1 + 2.0 * z2)).max(0.0).sqrt();
     3.0 + z2 - root.copysign(a)
@@ -72,12 +72,47 @@ pub struct CircularOrbit {
     pub beta: f64,
 }
 
+/// Sums in s = 1 / sqrt(r) that circular orbits towards +ph are made of. For spins near 1 each is small beside the
+/// horizon, and written as what it is for a = 1, which has factors 1 - s, and a rest.
+struct OrbitSums {
+    /// 1 - 3 u + 2 a s^3 = (1 - s)^2 (1 + 2 s) - 2 (1 - a) s^3.
+    root: f64,
+    /// 1 - 2 u + a s^3 = (1 - s) (1 + s - u) - (1 - a) s^3.
+    energy: f64,
+    /// 1 - 2 a s^3 + a^2 u^2 = (1 - s) (1 + s + u - s^3) + (1 - a) (2 s^3 - (1 + a) u^2).
+    momentum: f64,
+}
+
+/// From this spin on `OrbitSums` are written for it.
+const SPINS_FAST: f64 = 0.9999;
+
+impl OrbitSums {
+    fn new(a: f64, u: f64) -> Self {
+        let s = u.sqrt();
+        let v = u * s;
+        if a <= SPINS_FAST {
+            return Self {
+                root: 1.0 - 3.0 * u + 2.0 * a * v,
+                energy: 1.0 - 2.0 * u + a * v,
+                momentum: 1.0 - 2.0 * a * v + (a * u).powi(2),
+            };
+        }
+        let (near, rest) = ((1.0 - u) / (1.0 + s), 1.0 - a);
+        Self {
+            root: near * near * (1.0 + 2.0 * s) - 2.0 * rest * v,
+            energy: near * (1.0 + s - u) - rest * v,
+            momentum: near * (1.0 + s + u - v) + rest * (2.0 * v - (1.0 + a) * u * u),
+        }
+    }
+}
+
 /// `None` at or inside the circular photon orbit, where no time-like circular orbit exists. (Eq. 2.12, 2.13, 2.16,
 /// 3.11a.)
 pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
     let u = 1.0 / r;
     let v = u * u.sqrt();
-    let root = (1.0 - 3.0 * u + 2.0 * a * v).sqrt();
+    let sums = OrbitSums::new(a, u);
+    let root = sums.root.sqrt();
     if root.is_nan() || root <= 0.0 || r <= horizon_outer(a) {
         return None;
     }
@@ -85,9 +120,9 @@ pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
     Some(CircularOrbit {
         angular_velocity: 1.0 / (r * r.sqrt() + a),
         ut: (1.0 + a * v) / root,
-        energy: (1.0 - 2.0 * u + a * v) / root,
-        angular_momentum: r.sqrt() * (1.0 - 2.0 * a * v + (a * u).powi(2)) / root,
-        beta: (r * r - 2.0 * a * r.sqrt() + a * a) / (delta.sqrt() * (r * r.sqrt() + a)),
+        energy: sums.energy / root,
+        angular_momentum: r.sqrt() * sums.momentum / root,
+        beta: r * r * sums.momentum / (delta.sqrt() * (r * r.sqrt() + a)),
     })
 }
 
@@ -96,7 +131,8 @@ pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
 /// above.) Also for E <= 0, inside the ergosphere. NaN where no such orbit exists.
 pub fn redshift(a: f64, u: f64, retrograde: bool, energy: f64, angular_momentum: f64, nu_receiver: f64) -> f64 {
     let v = if retrograde { -u * u.sqrt() } else { u * u.sqrt() };
-    nu_receiver * (1.0 - 3.0 * u + 2.0 * a * v).sqrt() / (energy * (1.0 + a * v) - v * angular_momentum)
+    let matter_spin = if retrograde { -a } else { a };
+    nu_receiver * OrbitSums::new(matter_spin, u).root.sqrt() / (energy * (1.0 + a * v) - v * angular_momentum)
 }
 
 #[cfg(test)]
@@ -127,6 +163,32 @@ mod tests {
         assert!(circular_orbit(0.0, 3.0).is_none());
         assert!(circular_orbit(0.5, photon_orbit(0.5) * (1.0 - 1e-9)).is_none());
         assert!(circular_orbit(0.5, photon_orbit(0.5) * (1.0 + 1e-6)).is_some());
+    }
+
+    /// About the fastest holes, beside the horizon too: where a = 1, E = 1 / sqrt(3) at r+ (Bardeen, Press & Teukolsky
+    /// 1972), and the speed is 1/2. The sums agree where both ways of writing them hold.
+    #[test]
+    fn orbits_about_the_fastest_holes() {
+        for x in [1e-2, 1e-5, 1e-8, 1e-11] {
+            let orbit = circular_orbit(1.0, 1.0 + x).unwrap();
+            assert!((orbit.energy * 3.0_f64.sqrt() - 1.0).abs() < 2.0 * x + 1e-4 * 1e-11 / x, "{x}: {orbit:?}");
+            assert!((orbit.beta - 0.5).abs() < 2.0 * x + 1e-4 * 1e-11 / x, "{x}: {orbit:?}");
+            // -1 = g_ab u^a u^b: E u^t - L u^ph = 1.
+            let norm = orbit.ut * (orbit.energy - orbit.angular_velocity * orbit.angular_momentum);
+            assert!((norm - 1.0).abs() < 4e-16 / (x * x) && orbit.ut > 0.5 / x, "{x}: {norm}");
+        }
+        for a in [0.99991, 1.0 - 1e-6, 1.0] {
+            for r in [1.5, 3.0, 40.0_f64] {
+                let (s, sums) = (1.0 / r.sqrt(), OrbitSums::new(a, 1.0 / r));
+                let v = s.powi(3);
+                assert!((sums.root - (1.0 - 3.0 * s * s + 2.0 * a * v)).abs() < 1e-15);
+                assert!((sums.energy - (1.0 - 2.0 * s * s + a * v)).abs() < 1e-15);
+                assert!((sums.momentum - (1.0 - 2.0 * a * v + a * a * s.powi(4))).abs() < 1e-15);
+            }
+        }
+        assert_eq!((isco(1.0), horizon_outer(1.0), horizon_inner(-1.0)), (1.0, 1.0, 1.0));
+        assert!((isco(1.0 - 1e-12) - 1.0 - 4e-12_f64.cbrt()).abs() < 1e-7);
+        assert!(photon_orbit(1.0) >= 1.0 && photon_orbit(1.0) < 1.0 + 1e-15);
     }
 
     /// L_z = sqrt(r) (1 - 2 a v + a^2 u^2) / root and E are stationary at the ISCO.

@@ -70,7 +70,15 @@ pub fn offsets(a: f64, u: f64) -> Offsets {
 /// Terms of the polynomials of `OffsetSeries`.
 pub const OFFSET_TERMS: usize = 24;
 
-/// `offsets` of a hole of spin |a| < 1 for frames, which ask for them at many places: with poles of D apart
+/// The slope of `Offsets::azimuth` by r at the radius `r` outside the horizon.
+pub fn azimuth_slope(a: f64, r: f64) -> f64 {
+    2.0 * a * r / ((r - horizon_outer(a)) * (r - horizon_inner(a)) * (2.0 * r * (r * r + a * a)).sqrt())
+}
+
+/// Largest |a| of `OffsetSeries`: beyond it the poles of D come too near to each other.
+pub const MOST_SERIES_SPIN: f64 = 0.9999;
+
+/// `offsets` of a hole of spin |a| <= 0.9999 for frames, which ask for them at many places: with poles of D apart
 ///
 /// ```text
 /// 1 / D = (r+ / (1 - r+ u) - r- / (1 - r- u)) / (r+ - r-)

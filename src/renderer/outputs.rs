@@ -41,9 +41,11 @@ impl Renderer {
         Ok(region)
     }
 
-    /// The outputs of a frame. Errors: as `check_outputs`; of the picture, those of `request`.
+    /// The outputs of a frame. Errors: as `check_outputs`; UNSUPPORTED for a spin beyond those of frames; of the
+    /// picture, those of `request`.
     fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
         let checked = self.check_outputs(&targets, region)?;
+        self.scene.hole.check_shown("a frame")?;
         for OutputTarget { output, target, transparent } in &mut targets {
             if *output != Output::Light {
                 self.scene.check_one_eye("an output beside the light")?;

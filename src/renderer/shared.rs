@@ -319,6 +319,7 @@ impl Renderer {
     fn submit_shared(&mut self, frame: SharedFrame, submits: Submits) -> Result<Job> {
         let request = frame.request;
         self.scene.check_one_eye("a frame for a target on the GPU")?;
+        self.scene.hole.check_shown("a frame")?;
         self.scene.lens(&request.region)?;
         let asks = (submits == Submits::InBackground).then(|| frame.sync.clone());
         let scene = match &frame.light {

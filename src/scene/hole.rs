@@ -4,14 +4,17 @@
 use crate::error::{Error, Number, Result, out_of_range};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Largest |a / M| the tracers accept.
-pub const MAX_SPIN: f64 = 0.9999;
+/// Largest |a / M| of a hole.
+pub const MAX_SPIN: f64 = 1.0;
+/// Largest |a / M| of holes in frames and about matter with depth. Beyond it lens tables, the disk's profile and single
+/// precision do not hold; rays in f64 and world lines do.
+pub const MAX_SHOWN_SPIN: f64 = 0.9999;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
     /// M in scene lengths, > 0. Default 1.
     pub mass: f64,
-    /// a / M in [-0.9999, 0.9999]; < 0: the hole turns towards -phi. Default 0.
+    /// a / M in [-1, 1]; < 0: the hole turns towards -phi. Default 0.
     pub spin: f64,
     /// Spin axis and disk normal, scene axes, unit. Default +z.
     pub axis: DVec3,
@@ -32,12 +35,29 @@ impl Hole {
         Err(Error::argument(format!("mass is {}; it must be finite and greater than 0 (scene lengths)", Number(mass))))
     }
 
-    /// Errors: `spin` not finite or |spin| > 0.9999.
+    /// Errors: `spin` not finite or |spin| > 1.
     pub fn check_spin(spin: f64) -> Result<f64> {
         if spin.abs() <= MAX_SPIN {
             return Ok(spin);
         }
         Err(out_of_range("spin", spin, -MAX_SPIN, MAX_SPIN))
+    }
+
+    /// Whether the spin is beyond those of frames (`MAX_SHOWN_SPIN`).
+    pub fn spins_too_fast(&self) -> bool {
+        self.spin.abs() > MAX_SHOWN_SPIN
+    }
+
+    /// Errors: UNSUPPORTED for a spin beyond those of frames, naming `what` is asked for.
+    pub fn check_shown(&self, what: &str) -> Result<()> {
+        if !self.spins_too_fast() {
+            return Ok(());
+        }
+        let spin = Number(self.spin);
+        Err(Error::unsupported(format!(
+            "spin is {spin}; {what} takes spins in [-{MAX_SHOWN_SPIN}, {MAX_SHOWN_SPIN}]; beyond are rays and \
+             world lines only"
+        )))
     }
 
     /// The unit vector along `axis`. Errors: a component not finite, or zero length.

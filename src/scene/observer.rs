@@ -9,6 +9,7 @@ use super::projection::Mapping;
 use super::{Camera, Motion, Region, Scene};
 use crate::error::{Error, Number, Result};
 use crate::physics::geodesic::{Clock, RAIN_CLOCK_RADIUS};
+use crate::physics::images::is_below;
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use glam::{DMat3, DVec2, DVec3};
@@ -104,22 +105,13 @@ impl Scene {
         Ok(restated(&Observer::moving(place, beta)))
     }
 
-    /// The viewpoint of the camera for what knows the chart of Boyer and Lindquist only: with spin, outside the
-    /// horizon. Errors: as `observer`; UNSUPPORTED farther in, naming `what` is asked for.
-    pub(super) fn static_viewpoint(&self, what: &str) -> Result<Viewpoint> {
+    /// The viewpoint that images of points are found from: in Doran's chart beside the horizon of a spinning hole and
+    /// inside, else in that of Boyer and Lindquist. Errors: as `observer`.
+    pub(super) fn viewpoint_of_points(&self) -> Result<Viewpoint> {
         let viewpoint = self.viewpoint_of(&self.camera)?;
         let frame = viewpoint.observer.frame;
-        if !frame.rain || frame.a == 0.0 {
-            return Ok(viewpoint);
-        }
-        if frame.r <= horizon_outer(frame.a) {
-            let (r, limit) = (Number(frame.r), Number(horizon_outer(frame.a)));
-            return Err(Error::unsupported(format!(
-                "camera at r = {r} M lies at or inside the horizon of a spinning hole, {limit} M: {what} is not \
-                 supported there"
-            )));
-        }
-        Ok(restated(&viewpoint.observer))
+        let stays = !frame.rain || frame.a == 0.0 || is_below(&frame);
+        Ok(if stays { viewpoint } else { restated(&viewpoint.observer) })
     }
 
     /// The viewpoint of a camera that keeps its radius, at the place of a rain frame.

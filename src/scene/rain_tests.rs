@@ -229,7 +229,7 @@ fn motions_and_places_are_checked() {
     assert!(scene.observer().unwrap_err().message.contains("BHR_CHART_RAIN"));
     assert!(scene.projector(4, 4, None, 0).is_err());
     scene.camera.chart = Chart::Rain;
-    assert!(scene.projector(4, 4, None, 0).unwrap_err().message.contains("bhr_project_point"));
+    assert!(scene.projector(4, 4, None, 0).is_ok());
     let ray = Ray { position: scene.camera.position, direction: DVec3::X, frequency_ratio: 1.0 };
     assert!(scene.start(&ray).is_some());
     scene.camera.chart = Chart::Static;

@@ -5,6 +5,7 @@
 #include "check.h"
 #include "refusals.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,13 +22,13 @@ static void mass(Watch *watch, BhrContext *context) {
 }
 
 static void spin(Watch *watch, BhrContext *context) {
-    static const double bad[] = {0.99990001, -0.99990001, 1.0, -1.0, 5.0, NAN, INFINITY, -INFINITY};
+    static const double bad[] = {1.0 + DBL_EPSILON, -1.0 - DBL_EPSILON, 1.0000001, 5.0, NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spin", bhr_set_spin(context, bad[i]));
     }
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_spin(NULL, 0.0));
-    CHECK_OK(bhr_set_spin(context, -0.9999));
-    CHECK_OK(bhr_set_spin(context, 0.9999));
+    CHECK_OK(bhr_set_spin(context, -1.0));
+    CHECK_OK(bhr_set_spin(context, 1.0));
     CHECK_OK(bhr_set_spin(context, watch->spin));
 }
 

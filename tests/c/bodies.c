@@ -105,8 +105,9 @@ static void fall_without_spin(BhrContext *context) {
 }
 
 /* A circle in the equatorial plane at r = 10 M: d ph / d t = 1 / (r^(3/2) + a), and after a turn all is as it was. */
-static void circle(BhrContext *context) {
-    const double  r = 10.0, root = sqrt(r), a = SPIN;
+static void circle(BhrContext *context, double a) {
+    CHECK_OK(bhr_set_spin(context, a));
+    const double  r = 10.0, root = sqrt(r);
     const double  delta = r * r - 2.0 * r + a * a, rate = 1.0 / (r * root + a);
     const double  v = (r * r - 2.0 * a * root + a * a) / (sqrt(delta) * (r * root + a));
     const double  ut = (1.0 + a / (r * root)) / sqrt(1.0 - 3.0 / r + 2.0 * a / (r * root));
@@ -131,6 +132,44 @@ static void circle(BhrContext *context) {
     in_scene(place, MASS * r, cos(ph), sin(ph), 0.0);
     CHECK(distance(later.position, place) < 1e-5 * MASS && later.end == BHR_WORLD_LINE_GOES_ON,
           "after 1e5 M: off by %g", distance(later.position, place));
+    CHECK_OK(bhr_set_spin(context, SPIN));
+}
+
+/* About a hole of spin 1 or -1: a fall from rest at infinity in the plane, after the proper time that the integral of
+ * r^2 / sqrt(2 r (r^2 + 1)) says, to r = 1; and a line of the reference (tests/golden/worldlines.json). */
+static void fastest(BhrContext *context) {
+    for (double spin = -1.0; spin < 2.0; spin += 2.0) {
+        CHECK_OK(bhr_set_spin(context, spin));
+        const BhrBody start = body_at(BHR_CHART_RAIN, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0);
+        enum { STEPS = 200 };
+        for (double r = 3.5; r > 1.0; r -= 0.249) {
+            double proper = 0.0;
+            for (int i = 0; i <= STEPS; i++) {
+                const double x = r + (4.0 - r) * i / STEPS;
+                const int    weight = i == 0 || i == STEPS ? 1 : 2 + 2 * (i % 2); /* Simpson's rule */
+                proper += weight * (4.0 - r) / (3.0 * STEPS) * x * x / sqrt(2.0 * x * (x * x + 1.0));
+            }
+            const BhrBody found = followed(context, &start, MASS * proper);
+            CHECK(found.end == BHR_WORLD_LINE_GOES_ON && fabs(length(found.position) / MASS - r) < 1e-9,
+                  "%.14g, not %g", length(found.position) / MASS, r);
+            CHECK(distance(found.position, start.position) < 4.0 * MASS - length(found.position) + 1e-9 &&
+                      fabs(found.time - MASS * proper) < 1e-9 * MASS && length(found.velocity) < 1e-9,
+                  "the rain observer moves: %g", length(found.velocity));
+        }
+        const BhrBody end = followed(context, &start, MASS * 10.0);
+        CHECK(end.end == BHR_WORLD_LINE_INNER_HORIZON && fabs(length(end.position) / MASS - 1.0) < 1.1e-6,
+              "end %d at r = %.12g M", (int)end.end, length(end.position) / MASS);
+        const BhrBody zamo = body_at(BHR_CHART_STATIC, 4.0, 0.0, 1.0, -0.1, 0.2, -0.1);
+        const BhrBody held = followed(context, &zamo, 1000.0);
+        CHECK(held.end == BHR_WORLD_LINE_HORIZON && fabs(length(held.position) / MASS - 1.0) < 1.1e-6 &&
+                  isfinite(held.time),
+              "end %d at r = %.12g M", (int)held.end, length(held.position) / MASS);
+    }
+    const double  theta = 70.0 * PI / 180.0, s = sin(theta), c = cos(theta);
+    const BhrBody start = body_at(BHR_CHART_RAIN, 5.0 * s, 0.0, 5.0 * c, 0.62 * s - 0.1 * c, 0.42, 0.62 * c + 0.1 * s);
+    const BhrBody found = followed(context, &start, 200.0 * MASS);
+    CHECK(fabs(length(found.position) / MASS - 35.962884854654) < 1e-8, "%.14g", length(found.position) / MASS);
+    CHECK_OK(bhr_set_spin(context, SPIN));
 }
 
 /* E and L per mass, of a body told by the ZAMO, from the metric there. */
@@ -388,7 +427,9 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_set_spin(context, SPIN));
     CHECK_OK(bhr_set_axis(context, AXIS));
     fall_without_spin(context);
-    circle(context);
+    circle(context, SPIN);
+    circle(context, 1.0);
+    fastest(context);
     conserved(context);
     through_the_horizon(context);
     many(context);

@@ -206,7 +206,7 @@ class Context(SceneText, Tracing):
 
     @property
     def spin(self) -> float:
-        """The spin a / M, -0.9999 .. 0.9999. Default 0."""
+        """The spin a / M, -1 .. 1; in frames -0.9999 .. 0.9999. Default 0."""
         return self._hole()[1]
 
     @spin.setter

@@ -51,7 +51,7 @@ fn random_value(section: Section, field: &Field, random: &mut Random) -> Value {
     match (section, field.name, field.kind) {
         (_, "time", _) => numbers(&[within(-1e9, 1e9)]),
         (_, "mass", _) => numbers(&[within(1e-3, 1e3)]),
-        (_, "spin", _) => numbers(&[within(-0.9999, 0.9999)]),
+        (_, "spin", _) => numbers(&[within(-1.0, 1.0)]),
         (_, "position", _) => numbers(&[within(1.0, 50.0), within(1.0, 50.0), within(1.0, 50.0)]),
         (_, "axis" | "up", _) => numbers(&[within(-0.1, 0.1), within(-0.1, 0.1), within(0.2, 3.0)]),
         (_, "forward", _) => numbers(&[within(-2.0, -1.0), within(0.1, 3.0), within(-0.5, 0.5)]),
@@ -176,7 +176,7 @@ fn a_preset_is_a_base() {
 #[test]
 fn mistakes_are_told_where_they_stand() {
     for (text, words) in [
-        ("[hole]\nspin = 1.5", "line 2, column 8: [hole]: spin is 1.5; it must lie in [-0.9999, 0.9999]"),
+        ("[hole]\nspin = 1.5", "line 2, column 8: [hole]: spin is 1.5; it must lie in [-1, 1]"),
         ("[hole]\nspinn = 0.5", "line 2, column 1: [hole] has no \"spinn\"; it has mass, spin, axis"),
         ("[hole]\nspin = 'fast'", "line 2, column 8: spin is text; it must be a number"),
         ("[hole]\naxis = [0, 1]", "line 2, column 8: axis has 2 numbers; it must be a list of 3 numbers"),

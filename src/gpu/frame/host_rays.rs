@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
-//! in f32. Three kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell
-//! them from it, those that wind about the hole, along which the rounding of f32 grows too large, and those in the
-//! chart RAIN.
+//! in f32. Four kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell
+//! them from it, those that wind about the hole, along which the rounding of f32 grows too large, those in the chart
+//! RAIN, and those about holes that spin faster than those of frames.
 
 use super::tracer::GpuTracer;
 use crate::allocate::{collected, with_room};
@@ -50,7 +50,7 @@ impl GpuTracer {
 
     fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         let horizon = horizon_outer(scene.hole.spin);
-        let is_rain = scene.camera.chart == Chart::Rain;
+        let all_exact = scene.camera.chart == Chart::Rain || scene.hole.spins_too_fast();
         let mut exact = with_room(rays.len(), "rays to trace")?;
         let mut started = with_room(rays.len(), "rays to trace")?;
         let mut starts = with_room(rays.len(), "rays to trace")?;
@@ -63,7 +63,7 @@ impl GpuTracer {
                     *hit = scene.hit(ray, &frame, None, &nothing);
                 }
                 Some((frame, Some((constants, state))))
-                    if is_rain
+                    if all_exact
                         || (frame.r / horizon - 1.0).abs() < TOO_NEAR
                         || constants.critical_margin(&state) < WINDS =>
                 {

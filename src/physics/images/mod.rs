@@ -5,19 +5,22 @@
 //! Without spin a ray stays in the plane of observer, hole and point. The optical geometry of that plane has negative
 //! curvature outside r = 3/2 M (-2/r^3 + 3/r^4; Gibbons & Werner 2008, Class. Quantum Grav. 25, 235009), so that two
 //! rays that part never meet again: for each angle to be swept there is exactly one ray, found by bracketing (`plane`).
-//! With spin that ray is followed while the spin grows from 0 (`path`), by Newton's method with the integrator itself.
+//! With spin that ray is followed while the spin grows from 0 (`path`), by Newton's method with the integrator itself,
+//! and beside the horizon and inside while the observer falls (`falling`).
 
 mod shooting;
 mod plane;
 mod spin;
 mod winding;
 mod path;
+mod falling;
 #[cfg(test)]
 mod tests;
 
 use super::geodesic::{Constants, State};
 use super::observer::LocalFrame;
 use super::orbit::{horizon_outer, zamo_omega};
+use super::rain::azimuth_slope;
 use glam::DVec3;
 use shooting::{Aim, Flight, Target, fine};
 
@@ -54,7 +57,8 @@ pub enum NoImage {
     Lost,
 }
 
-/// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`.
+/// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`. The
+/// chart is the frame's: Doran's for the rain frame of a spinning hole, which is one beside the horizon or inside.
 pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Result<Image, NoImage> {
     let Ok(at_point) = LocalFrame::new(frame.a, point) else { return Err(NoImage::None) };
     // The observer's place is known to rounding.
@@ -68,8 +72,11 @@ pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Result<Image, NoIm
 /// The image of a point outside the horizon.
 fn found(frame: &LocalFrame, point: DVec3, at_point: &LocalFrame, order: u32) -> Option<Image> {
     let distance = point.distance(frame.e_r * frame.r);
-    let step = fine(order, 1.0 / at_point.r);
-    let aim = if frame.a == 0.0 {
+    let is_below = falling::is_below(frame);
+    let step = if is_below { falling::STEP } else { fine(order, 1.0 / at_point.r) };
+    let aim = if is_below {
+        falling::aim(frame, point, order)?
+    } else if frame.a == 0.0 {
         plane::aim(frame, point.normalize(), 1.0 / at_point.r, order, plane::Care { step, tolerance: f64::EPSILON })?
     } else {
         path::aim(frame, point, order)?
@@ -94,6 +101,9 @@ fn found(frame: &LocalFrame, point: DVec3, at_point: &LocalFrame, order: u32) ->
     })
 }
 
+/// Whether `image` finds those of a rain frame's observer, about a spinning hole: beside the horizon and inside.
+pub use falling::is_below;
+
 /// The area at the point, M^2, of the beam of rays about `aim`, by its solid angle at the observer; its sign is that of
 /// the image's orientation.
 ///
@@ -110,6 +120,8 @@ fn beam_area(frame: &LocalFrame, aim: &Aim, flight: &Flight, at: &LocalFrame, or
     let delta = sigma_delta(a, at.r);
     let circumference = at.circumference();
     let drag = circumference * at.sin * zamo_omega(a, at.r, at.sin) / at.lapse;
+    // Displacements are those of Boyer and Lindquist's chart.
+    let wound = if frame.rain && a != 0.0 { azimuth_slope(a, at.r) * at.sin } else { 0.0 };
     let c = &flight.constants;
     // The photon's momentum, as the ZAMO has it; the ray is followed backward.
     let polar = flight.velocity().dot(at.e_theta);
@@ -126,10 +138,11 @@ fn beam_area(frame: &LocalFrame, aim: &Aim, flight: &Flight, at: &LocalFrame, or
         });
         let ((u1, n1), (u0, n0)) = (after?, before?);
         let (du, dn) = ((u1 - u0) / (2.0 * step), (n1 - n0) / (2.0 * step));
+        let dr = -du / (u * u);
         let at_rest = DVec3::new(
-            -du / (u * u) * (sigma / delta).sqrt(),
+            dr * (sigma / delta).sqrt(),
             dn.dot(at.e_theta) * sigma.sqrt(),
-            dn.dot(at.e_phi) * circumference,
+            (dn.dot(at.e_phi) - wound * dr) * circumference,
         );
         let time = momentum.dot(at_rest) / (1.0 + momentum.z * drag);
         Some(at_rest - DVec3::Z * (drag * time))

@@ -9,9 +9,11 @@ use crate::physics::observer::LocalFrame;
 use glam::{DQuat, DVec3};
 
 /// Newton's method on the way, and at its end.
-const ON_THE_WAY: Effort = Effort { step: COARSE, tolerance: 1e-6, enough: 1e-5, iterations: 6, most: 0.3 };
-fn at_the_end(order: u32, target: &Target) -> Effort {
-    Effort { step: fine(order, target.u), tolerance: 1e-10, enough: 1e-8, iterations: 12, most: 0.3 }
+fn on_the_way(step: f64) -> Effort {
+    Effort { step, tolerance: 1e-6, enough: 1e-5, iterations: 6, most: 0.3 }
+}
+fn at_the_end(step: f64) -> Effort {
+    Effort { step, tolerance: 1e-10, enough: 1e-8, iterations: 12, most: 0.3 }
 }
 
 /// The ray without spin, from which others are followed.
@@ -39,7 +41,7 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
                 let turned = DQuat::IDENTITY.slerp(arc, s) * beside;
                 Some((*frame, Target::new(turned)))
             };
-            finished(frame, point, follow(way, aim, order)?, order)
+            finished(frame, point, follow(way, aim, order, COARSE)?, order)
         })
     })
 }
@@ -47,18 +49,29 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
 /// The ray with all digits.
 fn finished(frame: &LocalFrame, point: DVec3, aim: Aim, order: u32) -> Option<Aim> {
     let target = Target::new(point);
-    bring(frame, &target, aim, order, &at_the_end(order, &target)).map(|(aim, _)| aim)
+    brought(frame, &target, aim, order, fine(order, target.u))
+}
+
+/// The ray with all digits that steps of a length have.
+pub(super) fn brought(frame: &LocalFrame, target: &Target, aim: Aim, order: u32, step: f64) -> Option<Aim> {
+    bring(frame, target, aim, order, &at_the_end(step)).map(|(aim, _)| aim)
 }
 
 /// The ray that the one without spin becomes.
 fn spun_up(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
     let way = |s: f64| spun_way(frame, point, s);
     let (still, target) = way(0.0)?;
-    follow(way, plane::aim(&still, point.normalize(), target.u, order, WITHOUT_SPIN)?, order)
+    follow(way, plane::aim(&still, point.normalize(), target.u, order, WITHOUT_SPIN)?, order, COARSE)
 }
 
-/// Follows a ray along a way from 0 to 1, which gives observer and target.
-fn follow(way: impl Fn(f64) -> Option<(LocalFrame, Target)>, begin: Aim, order: u32) -> Option<Aim> {
+/// Follows a ray along a way from 0 to 1, which gives observer and target, in steps of a length in sigma.
+pub(super) fn follow(
+    way: impl Fn(f64) -> Option<(LocalFrame, Target)>,
+    begin: Aim,
+    order: u32,
+    step: f64,
+) -> Option<Aim> {
+    let effort = on_the_way(step);
     let mut passed = vec![(0.0, begin)];
     // Rays of higher orders keep to their image in a range that is smaller by e^pi for each half turn.
     let mut stretch = (-2.0 * f64::from(order)).exp();
@@ -68,7 +81,7 @@ fn follow(way: impl Fn(f64) -> Option<(LocalFrame, Target)>, begin: Aim, order: 
         }
         let next = (s + stretch).min(1.0);
         let (frame, target) = way(next)?;
-        match bring(&frame, &target, expected(&passed, next), order, &ON_THE_WAY) {
+        match bring(&frame, &target, expected(&passed, next), order, &effort) {
             Some((aim, iterations)) => {
                 passed.push((next, aim));
                 if iterations <= 3 {

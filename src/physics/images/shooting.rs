@@ -142,11 +142,12 @@ impl Flight {
     /// d(chart direction) / d(tau) at the end.
     pub fn velocity(&self) -> DVec3 {
         let there = &self.there;
+        let c = &self.constants;
         let n = there.n.normalize();
         let dn = there.dn - n * n.dot(there.dn);
         let (sin, cos) = there.drag.sin_cos();
         let turned = DVec3::new(dn.x * cos - dn.y * sin, dn.x * sin + dn.y * cos, dn.z);
-        turned + DVec3::Z.cross(there.chart_direction()) * self.constants.drag_rate(there.u)
+        turned + DVec3::Z.cross(there.chart_direction()) * c.turning_rate(there.u, there.du)
     }
 }
 

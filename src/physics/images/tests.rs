@@ -2,8 +2,9 @@
 //! Images of points against rays that another integrator follows, and against the lens equation.
 
 use super::*;
-use crate::physics::integrator::{Method, step, step_limit};
+use crate::physics::integrator::{Method, held_inside, step, step_limit};
 use crate::physics::metric::chart;
+use crate::physics::orbit::innermost_radius;
 use crate::random::{mix, runs_all};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -31,7 +32,7 @@ impl Random {
 fn least_distance(frame: &LocalFrame, look: DVec3, point: DVec3) -> f64 {
     let (c, start) = frame.start(look).unwrap();
     let distance = |s: &State| (s.chart_direction() / s.u).distance(point);
-    let advance = |s: &State, h: f64| step(Method::DormandPrince, &c, s, h, false).0;
+    let advance = |s: &State, h: f64| held_inside(&c, step(Method::DormandPrince, &c, s, h, false).0);
     // The golden section, within two steps.
     let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
     let refined = |from: &State, length: f64| {
@@ -49,7 +50,7 @@ fn least_distance(frame: &LocalFrame, look: DVec3, point: DVec3) -> f64 {
         // Far out steps are so short that none leaps to infinity.
         let h = (0.02 / c.scale).min(0.5 * step_limit(&c, &state, 0.025)).min(0.05 * state.u / state.du.abs());
         let next = advance(&state, h);
-        if next.u < 0.1 / point.length() && next.du < 0.0 || next.u * c.r_plus > 1.0 - 1e-8 {
+        if next.u < 0.1 / point.length() && next.du < 0.0 || next.du > 0.0 && next.u * c.r_plus > 1.0 - 1e-8 {
             break;
         }
         // A ray may come near several times.
@@ -127,6 +128,82 @@ fn rays_of_images_pass_their_points_with_spin() {
     let [lost, missed] = lost_and_missed(&cases);
     assert_eq!(missed, 0);
     assert!(lost * 10_000 <= cases.len(), "{lost} lost");
+}
+
+/// About the fastest holes, of which there are rays but no frames.
+#[test]
+fn images_about_the_fastest_holes() {
+    let cases = cases(count(10_000), &[1.0, -1.0, 1.0 - 1e-6, 1e-12 - 1.0], 1, [2.0, 1.0], 6);
+    let [lost, missed] = lost_and_missed(&cases);
+    assert_eq!(missed, 0);
+    assert!(lost * 500 <= cases.len(), "{lost} lost");
+}
+
+/// Rain observers between the horizons of spinning holes, and beside the outer one: the rays pass their points within
+/// 1e-9 (1 + conditioning), which is what they turn by as the look does.
+#[test]
+fn images_inside_the_horizon() {
+    let rain = |a: f64, place: DVec3| LocalFrame::rain(a, place).unwrap();
+    let all = cases(count(10_000), &[0.9, -0.5, 0.998, 0.1, -0.9999], HIGHEST_ORDER, [0.1, 0.1], 7);
+    let mut random = Random(11);
+    let placed = |(i, (a, observer, point, order)): (usize, Case)| {
+        let (outer, inner) = (horizon_outer(a), innermost_radius(a));
+        let r = match i / 5 % 5 {
+            0 => outer * (1.0 + 1e-6 * random.even(-1.0, 1.0)),
+            1 => outer + 0.3 * random.next(),
+            2 => inner * (1.0 + random.log(1e-6, 0.1)),
+            _ => random.even(inner, outer),
+        };
+        (a, observer.normalize() * r, point, order)
+    };
+    let all = all.into_iter().enumerate().map(placed).collect::<Vec<_>>();
+    for order in 0..=HIGHEST_ORDER {
+        let begun = Instant::now();
+        let cases = all.iter().filter(|case| case.3 == order).collect::<Vec<_>>();
+        let miss = |&&(a, observer, point, order): &&Case| {
+            let frame = rain(a, observer);
+            let Ok(image) = image(&frame, point, order) else {
+                println!("lost: spin {a}, order {order}, {observer} r {} {point}", observer.length());
+                return None;
+            };
+            let distance = point.distance(observer);
+            let aim = Aim::new(image.look, 1.0);
+            let small = aim.small(&frame, order);
+            let beside = aim.with(aim.vector() + DVec3::new(0.6, 0.8, 0.0) * small).look();
+            let [miss, near] = [image.look, beside].map(|look| least_distance(&frame, look, point) / distance);
+            Some((miss, near / small))
+        };
+        let found = cases.par_iter().map(miss).collect::<Vec<_>>();
+        let lost = found.iter().filter(|miss| miss.is_none()).count();
+        let greatest = |of: fn(&(f64, f64)) -> f64| found.iter().flatten().map(of).fold(0.0, f64::max);
+        let [worst, by_conditioning] = [greatest(|m| m.0), greatest(|m| m.0 / (1.0 + m.1))];
+        println!(
+            "order {order}: {lost} of {} lost, missed by {worst:.1e}, {by_conditioning:.1e} (1 + conditioning), {:?}",
+            cases.len(),
+            begun.elapsed()
+        );
+        let most = [1e-9, 1e-9, 1e-8, 1e-7][order as usize];
+        assert!(by_conditioning < most && (order > 1 || worst < 1e-8), "{worst:.1e} {by_conditioning:.1e}");
+        assert!(lost * 20 <= cases.len(), "{lost} lost");
+    }
+}
+
+/// On both sides of the horizon the image is the same.
+#[test]
+fn images_do_not_jump_at_the_horizon() {
+    let (mut jump, mut compared) = (0.0_f64, 0);
+    for (i, (a, observer, point, order)) in cases(60, &[0.9, -0.5, 0.998], 1, [0.1, 0.5], 20).into_iter().enumerate() {
+        let at = |r: f64| image(&LocalFrame::rain(a, observer.normalize() * r).unwrap(), point, order).ok();
+        let r_plus = horizon_outer(a);
+        let (Some(above), Some(below)) = (at(r_plus * (1.0 + 1e-6)), at(r_plus * (1.0 - 1e-6))) else { continue };
+        jump = jump.max(above.look.distance(below.look));
+        for (x, y) in [(above.magnification, below.magnification), (above.redshift, below.redshift)] {
+            assert!((x / y - 1.0).abs() < 1e-3, "{i}: {above:?} {below:?}");
+        }
+        compared += 1;
+    }
+    println!("{compared} images change by {jump:.1e} from r+ (1 + 1e-6) to r+ (1 - 1e-6)");
+    assert!(compared > 55 && jump < 1e-4, "{compared} {jump:.1e}");
 }
 
 /// Higher orders, where caustics are wide, and places beside the horizon.

@@ -58,6 +58,11 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
     })
 }
 
+/// The ray at the end of a way that the one at its begin becomes.
+pub fn led(way: &Way<'_>, begin: &Aim, order: u32) -> Option<Aim> {
+    SCALES.iter().find_map(|scale| Winding { scale: scale * (-PI * f64::from(order)).exp() }.led(way, begin, order))
+}
+
 /// Whether the ray in a direction falls into the hole, told by the barrier of its radial motion: u'^2 = E^2 +
 /// (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4 is least at a place u* > 0, which is a photon orbit's where it is 0.
 fn is_captured(frame: &LocalFrame, look: DVec3) -> bool {
@@ -255,7 +260,7 @@ impl Winding {
 }
 
 /// Observer and target at a share of the spin.
-type Way<'a> = dyn Fn(f64) -> Option<(LocalFrame, Target)> + 'a;
+pub type Way<'a> = dyn Fn(f64) -> Option<(LocalFrame, Target)> + 'a;
 
 /// The unit vector that all rows of the derivatives are at right angles to.
 fn tangent(columns: &[DVec3; 4]) -> Option<DVec4> {
