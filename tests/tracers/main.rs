@@ -10,6 +10,7 @@ mod extremes;
 mod eyes;
 #[path = "../frames/mod.rs"]
 mod frames;
+mod falls;
 mod free_spots;
 mod frusta;
 mod half;
