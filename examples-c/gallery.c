@@ -24,7 +24,8 @@
 static const char *const EXHIBITS[] = {
     "cinematic", "physical", "observatory", "teaching", "schwarzschild-edge-on", "schwarzschild-face-on", "kerr-0.998",
     "translucent", "orion", "einstein-ring", "galactic-centre", "grid", "fall-4", "fall-2.5", "fall-1.5",
-    "inside-kerr-horizon", "inside-kerr-between", "inside-kerr-inner", "inside-kerr-dome", "orbiting-observer",
+    "inside-kerr-horizon", "inside-kerr-between", "inside-kerr-inner", "inside-kerr-dome",
+    "inside-kerr-horizon-dome", "inside-kerr-inner-dome", "orbiting-observer",
     "dome-master", "equirect", "cube", "soft-disk", "torus", "halo", "jet", "hot-spot",
     "inside-the-torus", "view-redshift", "view-order", "view-deflection", "view-steps", "view-metric",
 };

@@ -71,7 +71,7 @@ fn random_cameras_inside_give_numbers() {
         let mut lit = 0;
         let count = count_from("BHR_TEST_CAMERAS_INSIDE", 60, 100_000);
         for i in 0..count {
-            let spin = random.pick(&[0.0, 1e-3, 0.3, -0.7, 0.9, 0.9999, -0.9999]) * random.pick(&[1.0, 1.0, 0.99]);
+            let spin: f64 = random.pick(&[0.0, 1e-3, 0.3, -0.7, 0.9, 0.9999, -0.9999]) * random.pick(&[1.0, 1.0, 0.99]);
             let root = (1.0 - spin * spin).sqrt();
             let inner = (1.0 - root).max(1e-3) * (1.0 + 3e-6);
             let r = inner + (1.05 * (1.0 + root) - inner) * random.range(0.0, 1.0).powi(2);
