@@ -47,6 +47,8 @@ struct RayTrace {
     to_state: State,
     h: f32,
     tau: f32,
+    // The orders of crossings within the horizon, a bit each; on_crossing is told of none.
+    inside: u32,
 }
 
 fn first_side(start: State) -> f32 {
@@ -59,6 +61,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
     var h_wish = settings.step / c.scale;
     var side = first_side(start);
     var order = 0u;
+    var inner_orders = 0u;
     var fate = FATE_UNRESOLVED;
     var steps = 0u;
     var tau = 0.0;
@@ -112,7 +115,9 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             side = next.n.z;
             if order < settings.max_crossings {
                 crossing = find_crossing(c, start, state, next, h, order);
-                meets = crossing.u > 0.0 && crossing.u <= 1.0 / (c.r_plus * (1.0 + 1e-5));
+                let inner = crossing.u > 1.0 / (c.r_plus * (1.0 + 1e-5));
+                meets = crossing.u > 0.0 && !inner;
+                inner_orders |= select(0u, 1u << order, inner);
             }
             order += 1u;
         }
@@ -145,7 +150,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
         tau += h;
         state = next;
     }
-    return RayTrace(fate, steps, state, next, h, tau);
+    return RayTrace(fate, steps, state, next, h, tau, inner_orders);
 }
 
 // The drag over what is left of a step, to first order.

@@ -70,7 +70,7 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         if next.u <= 0.0 {
             if !escaped {
-                let end = escape(c, RayTrace(FATE_ESCAPED, 0u, state, next, h, 0.0));
+                let end = escape(c, RayTrace(FATE_ESCAPED, 0u, state, next, h, 0.0, 0u));
                 sky = chart_direction(end.n, end.drag);
                 escaped = true;
             }

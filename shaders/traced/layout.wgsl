@@ -8,9 +8,9 @@
 //                   delay (with DELAY, else 0). With PARTS, from layer frame.medium_layer on, the medium before each
 //                   crossing and behind the last (emit/medium.wgsl).
 
-// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge, or is kept
-// outside its outer edge; bit 16 + k: it is kept. y: bits 0 .. 16 the steps, 17 .. 31 polar_momentum over r of the
-// camera (pack_momentum). z, w: E and L; in the METRIC view z is plane_u.
+// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge, within the
+// horizon too, or is kept outside its outer edge; bit 16 + k: it is kept. y: bits 0 .. 16 the steps, 17 .. 31
+// polar_momentum over r of the camera (pack_momentum). z, w: E and L; in the METRIC view z is plane_u.
 struct TracedMeta {
     fate: u32,
     beside_disk: u32,

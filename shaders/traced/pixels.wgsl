@@ -136,6 +136,8 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
         let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
             frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);
+        // A crossing that passes through the horizon is in no way beside an edge of the disk.
+        beside_orders |= select(0u, traced.inside, frame.disk_u.x <= frame.disk_u.y);
         m.fate = traced.fate;
         m.steps = traced.steps;
         if traced.fate == FATE_ESCAPED {

@@ -135,7 +135,8 @@ impl<'a> Recorder<'a> {
         // Crossings that are kept outside the disk count as well, so that those on the disk, which are kept, differ.
         let beyond = |u: f64| self.disk_u.is_some_and(|[outer, _]| u < outer && within(u));
         let off_disk = traced.crossings.iter().filter(|x| x.u > edge || beyond(x.u));
-        record.beside_disk = off_disk.fold(0, |bits, x| bits | 1 << (x.order & 15));
+        // Within the horizon, too: a crossing that passes through it is in no way beside an edge of the disk.
+        record.beside_disk = off_disk.fold(traced.inside, |bits, x| bits | 1 << (x.order & 15));
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| Crossing {
             u: x.u,
             order: x.order,

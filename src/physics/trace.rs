@@ -89,6 +89,15 @@ pub struct RayTrace {
     pub swept: f64,
     pub steps: u32,
     pub crossings: ArrayVec<PlaneCrossing, CROSSINGS_KEPT>,
+    /// The orders of crossings within the horizon, a bit each; they are not kept.
+    pub inside: u16,
+}
+
+impl RayTrace {
+    /// A ray of which nothing is known but its fate.
+    pub fn of(fate: Fate) -> Self {
+        Self { fate, direction: DVec3::ZERO, swept: f64::NAN, steps: 0, crossings: ArrayVec::new(), inside: 0 }
+    }
 }
 
 /// One accepted step of `follow`.
@@ -294,7 +303,7 @@ pub fn trace_visited(
 ) -> RayTrace {
     let c = constants;
     let mut crossings = ArrayVec::<PlaneCrossing, CROSSINGS_KEPT>::new();
-    let mut order = 0;
+    let (mut order, mut inside) = (0, 0);
     // A start in the plane is no crossing: the side is then the one it leaves to.
     let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
     let mut last = (*start, *start, 0.0, 0.0);
@@ -325,13 +334,16 @@ pub fn trace_visited(
                 if settings.opaque_u.is_some_and(|[low, high]| crossing.u >= low && crossing.u <= high) {
                     return false;
                 }
+            } else if order as usize <= crossing_limit && segment.to.u > 0.0 {
+                // Past infinity, where u is below 0, there are none.
+                inside |= 1 << (order - 1);
             }
         }
         visitor.part(&part);
         true
     });
     let (from, to, tau, h) = last;
-    let mut result = RayTrace { fate: Fate::Unresolved, direction: DVec3::ZERO, swept: f64::NAN, steps, crossings };
+    let mut result = RayTrace { steps, crossings, inside, ..RayTrace::of(Fate::Unresolved) };
     let swept = |tau: f64| if c.a == 0.0 { c.k.max(0.0).sqrt() * tau } else { f64::NAN };
     match end {
         End::OutOfSteps => {}
@@ -427,20 +439,8 @@ pub fn trace_look_visited(
     visitor: &mut impl Visitor,
 ) -> (Option<Constants>, RayTrace) {
     match frame.start(n) {
-        Some((c, state)) => {
-            let result = trace_visited(&c, &state, settings, visitor);
-            (Some(c), result)
-        }
-        None => {
-            let nothing = RayTrace {
-                fate: Fate::Captured,
-                direction: DVec3::ZERO,
-                swept: 0.0,
-                steps: 0,
-                crossings: ArrayVec::new(),
-            };
-            (None, nothing)
-        }
+        Some((c, state)) => (Some(c), trace_visited(&c, &state, settings, visitor)),
+        None => (None, RayTrace { swept: 0.0, ..RayTrace::of(Fate::Captured) }),
     }
 }
 

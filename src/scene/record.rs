@@ -31,7 +31,8 @@ pub struct Record {
     pub steps: u32,
     /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
     pub plane_u: f64,
-    /// Orders of crossings inside the disk's inner edge, or kept outside its outer edge, a bit each.
+    /// Orders of crossings inside the disk's inner edge, within the horizon too, or kept outside its outer edge, a bit
+    /// each.
     pub beside_disk: u16,
     /// The edge that runs through the pixel.
     pub edge: Edge,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cameras in the chart RAIN about a spinning hole: the GPU's pictures against the CPU's, inside the horizon and beside
-//! it, with matter of every kind; and a fall through r = 3 M, where tracers change charts, and through r+.
+//! it, with matter of every kind; a fall through r = 3 M, where tracers change charts, and through r+; and pixels that
+//! count as edges.
 
 use crate::frames::{both, cpu, floats, gpu, picture};
 use crate::random::runs_all;
@@ -160,6 +161,57 @@ fn a_fall_has_no_seam() {
             println!("{tracer}, through {seam}: jolts {:.1e}, at the seam {at_seam:.1e}", jolts[4]);
             // In single precision every frame is off by as much as two charts are.
             assert!(at_seam < 2.0 * jolts[4] + 2e-5, "{tracer}, through {seam}: {jolts:?}");
+        }
+    }
+}
+
+/// Pixels of a picture of which the light differs from another's.
+fn unlike(a: &[f32], b: &[f32]) -> Vec<bool> {
+    let differs = |(a, b): (&[f32], &[f32])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3 * (a.abs() + b.abs()));
+    a.chunks_exact(4).zip(b.chunks_exact(4)).map(differs).collect()
+}
+
+/// Between the horizons crossings of the disk's plane begin at r+: where the first of a ray's is lost there, the sky
+/// alone is seen on both sides, and no edge. More rays for its pixels would show single stars in a line through the
+/// even glow of all. Edges of the disk stay refined.
+#[test]
+fn no_edge_runs_along_the_horizon() {
+    const FULL: [u32; 2] = [320, 180];
+    let around = |x: i32, reach: i32, size: u32| (x - reach).max(0)..(x + reach + 1).min(size as i32);
+    for (tracer, mut renderer) in both() {
+        for (place, motion) in [([0.9, 0.96, -1.6], Motion::FreeFall), ([0.57, 0.49, -1.6], Motion::FreeFall)] {
+            let mut light = |disk: bool, sky: bool, refines: bool| {
+                renderer.scene = Scene::plain();
+                let scene = &mut renderer.scene;
+                scene.hole.spin = 0.9;
+                scene.camera = Camera { forward: -camera(motion, place).position, ..camera(motion, place) };
+                scene.camera.fov_y = 2.0;
+                scene.disk = disk.then(|| Disk { inner_radius: 4.0, turbulence: 0.0, ..Disk::plain() });
+                scene.sky = if sky { Sky { flags: Sky::STARS, ..Sky::plain() } } else { Sky::black() };
+                scene.quality.refines = refines;
+                floats(&picture(&mut renderer, PixelFormat::Rgba32F, FULL, None, false))
+            };
+            // Pixels whose light changes when edges are refined: of all, of the sky alone, and of the disk alone.
+            let refined = unlike(&light(true, true, true), &light(true, true, false));
+            let of_sky = unlike(&light(false, true, true), &light(false, true, false));
+            let edges = unlike(&light(true, false, true), &light(true, false, false));
+            let disk: Vec<bool> = light(true, false, false).chunks_exact(4).map(|p| p[..3] != [0.0; 3]).collect();
+            let lone = |i: &usize| {
+                let (x, y) = (*i as i32 % FULL[0] as i32, *i as i32 / FULL[0] as i32);
+                let is_sky = |[x, y]: [i32; 2]| !disk[(y * FULL[0] as i32 + x) as usize];
+                let apart = around(y, 3, FULL[1]).all(|y| around(x, 3, FULL[0]).all(|x| is_sky([x, y])));
+                refined[*i] && !of_sky[*i] && apart
+            };
+            let alone = (0..refined.len()).filter(lone).count();
+            let count = |pixels: &[bool]| pixels.iter().filter(|pixel| **pixel).count();
+            println!(
+                "{tracer}, {place:?}: {} refined, {} without the disk, {} of the disk's edges, {alone} far from both",
+                count(&refined),
+                count(&of_sky),
+                count(&edges)
+            );
+            assert!(alone < 8, "{tracer}, {place:?}: {alone} pixels of the sky are refined");
+            assert!(count(&edges) > 300, "{tracer}, {place:?}: {} pixels", count(&edges));
         }
     }
 }

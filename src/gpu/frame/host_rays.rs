@@ -16,7 +16,6 @@ use crate::physics::orbit::{horizon_inner, horizon_outer};
 use crate::physics::trace::{self, PlaneCrossing, RayTrace};
 use crate::scene::host_rays::trace_some;
 use crate::scene::{Chart, Fate, Hit, MAX_CROSSINGS, Ray, Scene};
-use arrayvec::ArrayVec;
 use glam::DVec3;
 use wgpu::BufferUsages as Usage;
 
@@ -59,7 +58,7 @@ impl GpuTracer {
             match scene.start(ray) {
                 None => {}
                 Some((frame, None)) => {
-                    let nothing = RayTrace { fate: trace::Fate::Captured, swept: 0.0, ..unresolved() };
+                    let nothing = RayTrace { swept: 0.0, ..RayTrace::of(trace::Fate::Captured) };
                     *hit = scene.hit(ray, &frame, None, &nothing);
                 }
                 Some((frame, Some((constants, state))))
@@ -141,13 +140,7 @@ fn ray_start(c: &Constants, s: &State) -> RayStart {
 }
 
 fn unresolved() -> RayTrace {
-    RayTrace {
-        fate: trace::Fate::Unresolved,
-        direction: DVec3::ZERO,
-        swept: f64::NAN,
-        steps: 0,
-        crossings: ArrayVec::new(),
-    }
+    RayTrace::of(trace::Fate::Unresolved)
 }
 
 /// N and drag as f64, a state without the rest.

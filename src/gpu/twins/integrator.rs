@@ -345,7 +345,7 @@ pub fn group() -> Group {
             "trace",
             "let c = ray_constants();
              let t = trace(c, ray_state(13u), Settings(0.2, 1e-6, 500u, 16u, 1.0 / c.r_plus, vec2<f32>(1.0, 0.0)));
-             out_word(t.fate); out_word(crossing_count);
+             out_word(t.fate); out_word(crossing_count); out_word(t.inside);
              out1(first.u); out2(select(vec2<f32>(0.0), chart_direction(first.n, first.drag).xy, crossing_count > 0u));
              out1(first.delay);
              let end = escape(c, t);
@@ -356,6 +356,7 @@ pub fn group() -> Group {
                 let traced = followed(&c, &start);
                 o.word(traced.fate as u32);
                 o.word(traced.crossings.len() as u32);
+                o.word(traced.inside.into());
                 match traced.crossings.first() {
                     Some(first) => {
                         let (sin, cos) = first.azimuth.sin_cos();
