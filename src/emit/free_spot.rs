@@ -108,6 +108,9 @@ impl FreeCentre {
     pub fn new(spin: f64, body: &Body, size: f64, series: &OffsetSeries, time: f64, delayed: bool) -> Option<Self> {
         let table = table_of(spin, body)?;
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+        if (time - table.nodes(false).first()?.time).abs() > table.longest() + EARLIER {
+            return None;
+        }
         let r_plus = horizon_outer(spin);
         // t of a node less the frame's, and its r; where t has no end, as if it were outside.
         let since = |node: &Node| {

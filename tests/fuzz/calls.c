@@ -212,6 +212,8 @@ static void scene_call(BhrContext *context) {
         camera.tan_left = mostly(1, 0) != 0 ? camera.tan_left : number();
         camera.tan_up = mostly(1, 0) != 0 ? camera.tan_up : number();
         camera.jitter[byte() % 2] = number() / 8.0;
+        camera.chart = mostly(1, 0) != 0 ? (BhrChart)(byte() % 2) : constant(BHR_CHART_RAIN);
+        camera.transport = mostly(1, 0) != 0 ? BHR_TRANSPORT_TRIAD : constant(BHR_TRANSPORT_PARALLEL);
         camera.eye = mostly(1, 0) != 0 ? BHR_EYE_MIDDLE : constant(BHR_EYE_RIGHT);
         camera.eye_distance = mostly(1, 0) != 0 ? 0.0 : number();
         check(bhr_set_camera(context, &camera));
@@ -286,7 +288,10 @@ static void scene_call(BhrContext *context) {
         for (size_t i = 0; i < 2; i++) {
             bhr_hot_spot_init(&spots[i], sizeof spots[i]);
             spots[i].struct_size = mostly(sizeof spots[i], byte());
-            spots[i].flags = mostly(byte() % 4, byte());
+            spots[i].flags = mostly(byte() % 16, byte());
+            spots[i].position[byte() % 3] = mostly(1, 0) != 0 ? 2.0 + byte() / 8.0 : number();
+            spots[i].velocity[byte() % 3] = number() / 16.0;
+            spots[i].time = mostly(1, 0) != 0 ? 0.0 : number();
             spots[i].radius = mostly(1, 0) != 0 ? spots[i].radius : number();
             spots[i].azimuth = number();
         }

@@ -72,6 +72,14 @@ impl WorldLineTable {
         Ok(Self { sides: [side(false)?, side(true)?] })
     }
 
+    /// The longest time from the start that `MOST_NODES` can reach: a body of E < 1 comes no farther out than 2 / (1 -
+    /// E^2), where its nodes are farthest apart; each may be a step longer than the spacing.
+    pub fn longest(&self) -> f64 {
+        let e2 = self.sides[0].course.line.c.energy.powi(2);
+        let farthest = if e2 < 1.0 { 2.0 / (1.0 - e2) } else { f64::INFINITY };
+        2.0 * SPACING * MOST_NODES as f64 * farthest.max(LEAST_SPACED).powf(1.5)
+    }
+
     /// The nodes into the past or the future as far as they are known, the start first.
     pub fn nodes(&self, past: bool) -> &[Node] {
         &self.sides[usize::from(past)].nodes
@@ -181,6 +189,7 @@ mod tests {
             assert!(parts.extend(false, |node| node.time > body.time + f64::from(i)).unwrap());
         }
         assert_eq!(whole.nodes(false), parts.nodes(false));
+        assert!(whole.longest() > 1e4 && whole.longest() < 1e9, "{}", whole.longest());
         assert_eq!(whole.end(true), None);
     }
 }
