@@ -146,17 +146,21 @@ const Field VOLUME_FIELDS[] = {
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 static const Choice HOT_SPOT_FLAGS[] = {
-    {"retrograde", BHR_HOT_SPOT_RETROGRADE}, {"thermal", BHR_HOT_SPOT_THERMAL}, {NULL, 0}};
+    {"retrograde", BHR_HOT_SPOT_RETROGRADE}, {"thermal", BHR_HOT_SPOT_THERMAL}, {"free", BHR_HOT_SPOT_FREE},
+    {NULL, 0}};
 
 const Field HOT_SPOT_FIELDS[] = {
     {"--retrograde", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
      "the spot moves towards -ph", &HOT_SPOT_FLAGS[0]},
     {"--thermal", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
      "the light is a blackbody's, not a power law's; without absorption there is none", &HOT_SPOT_FLAGS[1]},
+    {"--free", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
+     "the centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE "
+     "have no meaning", &HOT_SPOT_FLAGS[2]},
     {"--radius", OPTION_DOUBLE, offsetof(BhrHotSpot, radius), "M", 1, 1000, "1 .. 1000",
      "in M, 1 .. 1000", NULL},
-    {"--size", OPTION_DOUBLE, offsetof(BhrHotSpot, size), "M", 0, 0, NULL,
-     "in M, 0.05 .. radius / 4, and at least radius / 200", NULL},
+    {"--size", OPTION_DOUBLE, offsetof(BhrHotSpot, size), "M", 0.05, 250, "0.05 .. 250",
+     "in M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250", NULL},
     {"--azimuth", OPTION_DEGREES, offsetof(BhrHotSpot, azimuth), "rad", -1e6, 1e6, NULL,
      "the centre at scene time 0", NULL},
     {"--absorption", OPTION_DOUBLE, offsetof(BhrHotSpot, absorption), "1/M", 0, 1e6, "0 .. 1e6",
@@ -169,6 +173,12 @@ const Field HOT_SPOT_FIELDS[] = {
      "without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1", NULL},
     {"--brightness", OPTION_DOUBLE, offsetof(BhrHotSpot, brightness), NULL, 0, 1e6, "0 .. 1e6",
      "0 .. 1e6, as BhrVolume.brightness", NULL},
+    {"--position", OPTION_VECTOR, offsetof(BhrHotSpot, position), NULL, 0, 0, NULL,
+     "FREE: where the centre is at `time`, scene axes and lengths, as BhrBody has it", NULL},
+    {"--velocity", OPTION_VECTOR, offsetof(BhrHotSpot, velocity), "c", 0, 0, NULL,
+     "FREE: its velocity there in units of c, |v| < 1, scene axes, as BhrBody has it", NULL},
+    {"--time", OPTION_DOUBLE, offsetof(BhrHotSpot, time), "scene length", 0, 0, NULL,
+     "FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 static const Choice SKY_FLAGS[] = {

@@ -780,9 +780,10 @@ typedef struct BhrHotSpot {
     /** Without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1. */
     double tint[3];
     double brightness; /**< 0 .. 1e6, as BhrVolume.brightness. Default 1. */
-    /** FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
-     * BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0. */
+    /** FREE: where the centre is at `time`, scene axes and lengths, as BhrBody has it. Default 0, 0, 0, which FREE
+     * refuses. */
     double position[3];
+    /** FREE: its velocity there in units of c, |v| < 1, scene axes, as BhrBody has it. Default 0, 0, 0. */
     double velocity[3];
     /** FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0. */
     double time;

@@ -417,13 +417,14 @@ export interface HotSpot {
      */
     brightness: number;
     /**
-     * FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
-     * BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0.
+     * FREE: where the centre is at `time`, scene axes and lengths, as BhrBody has it. Default 0, 0, 0, which FREE
+     * refuses.
      * @default [0, 0, 0]
      */
     position: Vector;
     /**
-     * 
+     * FREE: its velocity there in units of c, |v| < 1, scene axes, as BhrBody has it. Default 0, 0, 0.
+     * @unit c
      * @default [0, 0, 0]
      */
     velocity: Vector;

@@ -174,10 +174,9 @@ struct HotSpot {
     Vector tint;
     /// 0 .. 1e6, as BhrVolume.brightness.
     double brightness;
-    /// FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
-    /// BhrBody, from whose fields they may come.
+    /// FREE: where the centre is at `time`, scene axes and lengths, as BhrBody has it.
     Vector position;
-    ///
+    /// FREE: its velocity there in units of c, |v| < 1, scene axes, as BhrBody has it.
     Vector velocity;
     /// FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time.
     double time;

@@ -243,7 +243,7 @@ impl SpotMatter {
         self.density_at(square)
     }
 
-    /// Of one in free fall: the density at a place, and the velocity of the matter as the rain observer there sees it.
+    /// The density of a spot in free fall at a place, and the velocity of its matter as the rain observer there sees it.
     /// `series`: the offsets of Doran's chart. `None`: there is none of it.
     pub fn free_at(&self, c: &Constants, series: &OffsetSeries, there: &FreePlace) -> Option<(f64, DVec3)> {
         let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);

@@ -336,9 +336,8 @@ impl Volumes {
         if !(there.u > 0.0 && there.u * c.r_plus < 1.0 - 1e-12) {
             return Coefficients::default();
         }
-        let (r, cos) = (1.0 / there.u, there.n.z / there.n.length());
+        let (r, cos, mut measured) = (1.0 / there.u, there.n.z / there.n.length(), None);
         let mut sum = Coefficients::default();
-        let mut measured = None;
         let mut measure = || {
             *measured.get_or_insert_with(|| {
                 let at = Place::on_ray(c, there.u, cos);
@@ -385,8 +384,8 @@ impl Volumes {
             let (azimuth, later) = moment();
             if spot.free.is_some() {
                 let Some(series) = &self.offsets else { continue };
-                let there = FreePlace { u: there.u, cos, azimuth, later: self.when.delayed.then_some(later) };
-                if let Some((density, seen)) = spot.free_at(c, series, &there) {
+                let place = FreePlace { u: there.u, cos, azimuth, later: self.when.delayed.then_some(later) };
+                if let Some((density, seen)) = spot.free_at(c, series, &place) {
                     let (at, light) = measure();
                     add(&light, zamo_velocity(&at, seen), &spot.glow, density, 1.0);
                 }

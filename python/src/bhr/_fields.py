@@ -232,10 +232,10 @@ class HotSpot(Struct):
     tint: Vector = (1.0, 1.0, 1.0)
     #: 0 .. 1e6, as BhrVolume.brightness. Default 1.
     brightness: float = 1.0
-    #: FREE: where the centre is at `time`, and its velocity v / c there, |v| < 1: in scene axes and lengths, as in
-    #: BhrBody, from whose fields they may come. Default 0, 0, 0, which FREE refuses, and 0, 0, 0.
+    #: FREE: where the centre is at `time`, scene axes and lengths, as BhrBody has it. Default 0, 0, 0, which FREE
+    #: refuses.
     position: Vector = (0.0, 0.0, 0.0)
-    #:
+    #: FREE: its velocity there in units of c, |v| < 1, scene axes, as BhrBody has it. Default 0, 0, 0.
     velocity: Vector = (0.0, 0.0, 0.0)
     #: FREE: scene time, in scene lengths, that position and velocity are of; RAIN: rain time. Default 0.
     time: float = 0.0
