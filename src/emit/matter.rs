@@ -243,8 +243,8 @@ impl SpotMatter {
         self.density_at(square)
     }
 
-    /// The density of a spot in free fall at a place, and the velocity of its matter as the rain observer there sees it.
-    /// `series`: the offsets of Doran's chart. `None`: there is none of it.
+    /// The density of a spot in free fall at a place, and the velocity of its matter as the rain observer there sees
+    /// it. `series`: the offsets of Doran's chart. `None`: there is none of it.
     pub fn free_at(&self, c: &Constants, series: &OffsetSeries, there: &FreePlace) -> Option<(f64, DVec3)> {
         let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);
         let centre = self.free.as_ref()?.at(there.later.map_or(0.0, |later| later + offsets.time))?;
