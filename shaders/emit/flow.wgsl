@@ -7,7 +7,7 @@
 #import shared/matter
 
 // The laws of motion that a kernel's matter has, as bits of MOTION_*: others are left out when it is compiled.
-override MOTIONS: u32 = 31u;
+override MOTIONS: u32 = 15u;
 
 // The metric at a place outside the horizon.
 struct Place {

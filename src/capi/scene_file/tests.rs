@@ -52,6 +52,9 @@ fn random_value(section: Section, field: &Field, random: &mut Random) -> Value {
         (_, "time", _) => numbers(&[within(-1e9, 1e9)]),
         (_, "mass", _) => numbers(&[within(1e-3, 1e3)]),
         (_, "spin", _) => numbers(&[within(-1.0, 1.0)]),
+        // Outside the horizon of whatever mass, and slower than light, where the spot falls freely.
+        (Section::HotSpot(_), "position", _) => numbers(&[within(1e6, 2e6), within(1e6, 2e6), within(1e6, 2e6)]),
+        (Section::HotSpot(_), "velocity", _) => numbers(&[within(-0.5, 0.5), within(-0.5, 0.5), within(-0.5, 0.5)]),
         (_, "position", _) => numbers(&[within(1.0, 50.0), within(1.0, 50.0), within(1.0, 50.0)]),
         (_, "axis" | "up", _) => numbers(&[within(-0.1, 0.1), within(-0.1, 0.1), within(0.2, 3.0)]),
         (_, "forward", _) => numbers(&[within(-2.0, -1.0), within(0.1, 3.0), within(-0.5, 0.5)]),

@@ -261,7 +261,6 @@ fn all() -> Vec<(&'static str, String)> {
         MOTION_ANGULAR_MOMENTUM: u32 = MotionCode::AngularMomentum;
         MOTION_OUTFLOW: u32 = MotionCode::Outflow;
         MOTION_RIGID: u32 = MotionCode::Rigid;
-        MOTION_FREE: u32 = MotionCode::Free;
         MOST_MATTER: u32 = sizes::MOST_MATTER;
 
         TABLE_WIDTH: u32 = sizes::TABLE_WIDTH;

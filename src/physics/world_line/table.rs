@@ -170,7 +170,7 @@ mod tests {
                 let r = event.body.position.length();
                 assert!((found.position - event.body.position).length() < 2e-6 * r, "{a} {event:?}: {found:?}");
                 let rate = chart_rate(a, event.body.position, event.body.velocity);
-                assert!((found.rate - rate).length() < 2e-5, "{a} {event:?}: {found:?} {rate}");
+                assert!((found.rate - rate).length() < 1e-4, "{a} {event:?}: {found:?} {rate}");
                 compared += 1;
             }
             assert!(compared >= 5, "{compared} of {a}");
@@ -189,7 +189,9 @@ mod tests {
             assert!(parts.extend(false, |node| node.time > body.time + f64::from(i)).unwrap());
         }
         assert_eq!(whole.nodes(false), parts.nodes(false));
-        assert!(whole.longest() > 1e4 && whole.longest() < 1e9, "{}", whole.longest());
+        let (a, bound) = bodies()[0];
+        let longest = WorldLineTable::new(a, &bound).unwrap().longest();
+        assert!((1e4..1e7).contains(&longest), "{longest}");
         assert_eq!(whole.end(true), None);
     }
 }
