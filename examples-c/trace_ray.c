@@ -327,7 +327,7 @@ static int run(int argc, char **argv) {
         .mass = 1.0, .distance = 30.0, .impact = NAN, .angle = NAN, .backend = BHR_BACKEND_CPU, .rows = 16};
     const Option options[] = {
         {"--mass", OPTION_DOUBLE, &s.mass, "M", "in scene lengths", NULL, NULL},
-        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.9999 to 0.9999", NULL, NULL},
+        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -1 to 1", NULL, NULL},
         {"--distance", OPTION_DOUBLE, &s.distance, "R", "the observer's radius in M", NULL, NULL},
         {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "the observer above the equatorial plane", NULL, NULL},
         {"--impact", OPTION_DOUBLE, &s.impact, "B", "impact parameter in M, for spin 0; looks towards the hole",

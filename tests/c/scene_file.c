@@ -91,7 +91,7 @@ static void mistakes(BhrContext *context) {
     CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "UTF-8", bhr_scene_load(context, "a\xff", 2));
     CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "line 1", bhr_scene_load(context, "[hole", 5));
     CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "line 3, column 8",
-                  load(context, "time = 9\n[hole]\nspin = 1.0\n[film]\nbloom = 0"));
+                  load(context, "time = 9\n[hole]\nspin = 1.5\n[film]\nbloom = 0"));
     CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "has no", load(context, "time = 9\nspin = 0.5"));
     CHECK_REFUSED(&watch, BHR_ERROR_IO, "nowhere.png", load(context, "time = 9\n[sky]\nmap = 'nowhere.png'"));
     CHECK_REFUSED(&watch, BHR_ERROR_IO, "nothing.toml", bhr_scene_load_file(context, path_of("nothing.toml")));
