@@ -93,7 +93,12 @@ fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32
     if has_shape(matter.shape, SHAPE_SPOT) || has_shape(matter.shape, SHAPE_FREE_SPOT) {
         let run = near - far;
         let across = swept / max(min(u.x, u.y), 1e-30);
-        return sqrt(run * run + across * across) / matter.size;
+        var passed = 0.0;
+        if has_shape(matter.shape, SHAPE_FREE_SPOT) {
+            let beside = max(1.0 - matter.radius * u, vec2<f32>(LEAST_BESIDE));
+            passed = matter.width * abs(log(beside.x / beside.y));
+        }
+        return (sqrt(run * run + across * across) + passed) / matter.size;
     }
     let thickness = matter.thickness;
     let change = abs(cosines.y - cosines.x);

@@ -17,7 +17,8 @@ struct Matter {
     // The sense of motion: +1 or -1.
     sense: f32,
     // Radii between which a volume is, M; the radius that its shape is about, or that of a spot's orbit; the width of a
-    // torus. Of a spot in free fall `inner` is 1 if its places are the denser the nearer to the last, else 0.
+    // torus. Of a spot in free fall `inner` is 1 if its places are the denser the nearer to the last, else 0;
+    // radius and width are the two of SpotMatter::lingers in src/emit/matter.rs.
     inner: f32,
     outer: f32,
     radius: f32,

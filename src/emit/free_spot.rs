@@ -5,6 +5,7 @@
 //! The centre's world line is told in Doran's chart, which goes on through the horizon as the body does: a spot that
 //! falls in is seen to fade in the time that its light takes, and leaves nothing behind.
 
+use super::bands::When;
 use super::shape::smooth_step;
 use crate::allocate::collected;
 use crate::physics::geodesic::Clock;
@@ -20,9 +21,9 @@ pub const TABLE_NODES: usize = 512;
 /// A spot is not shown while its centre is farther out, M.
 pub const FARTHEST: f64 = 1e4;
 /// Light that is seen at a time left the neighbourhood of r at most r + `EARLIER` before, and r + `LATER` after, it
-/// would have passed the hole: four turns about the hole, the delay of light that passes it closely, and what lingers
+/// would have passed the hole: two turns about the hole, the delay of light that passes it closely, and what lingers
 /// at the horizon. M.
-const EARLIER: f64 = 220.0;
+const EARLIER: f64 = 140.0;
 const LATER: f64 = 40.0;
 /// Where the two clocks are compared: beside the horizon t has no end.
 const LEAST_COMPARED: f64 = 1.05;
@@ -103,9 +104,10 @@ impl Ordered<'_> {
 }
 
 impl FreeCentre {
-    /// About the time `time` of t, in M; `delayed`: as far as light of one time comes from, else at that time itself.
-    /// `None`: the centre is nowhere then, or nowhere near.
-    pub fn new(spin: f64, body: &Body, size: f64, series: &OffsetSeries, time: f64, delayed: bool) -> Option<Self> {
+    /// About the moment `when`: as far as light comes from that is seen at once, or if it is not delayed, at that time
+    /// itself. `None`: the centre is nowhere then, or nowhere near.
+    pub fn new(spin: f64, body: &Body, size: f64, series: &OffsetSeries, when: &When) -> Option<Self> {
+        let When { time, delayed, .. } = *when;
         let table = table_of(spin, body)?;
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
         if (time - table.nodes(false).first()?.time).abs() > table.longest() + EARLIER {
@@ -127,7 +129,8 @@ impl FreeCentre {
         };
         let is_after = |node: &Node| {
             let (since, r) = since(node);
-            since > reach * r + later
+            // From beyond the observer light comes the later, the farther it is.
+            since > reach * r.min(2.0 * when.reference_delay - r) + later
         };
         let reaches = [table.extend(false, is_after).ok()?, table.extend(true, is_before).ok()?];
         if !reaches[0] && !is_after(table.nodes(false).last()?) || !reaches[1] && !is_before(table.nodes(true).last()?)

@@ -13,7 +13,7 @@ use super::volume::{FlowLaw, Shape, Volume};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion};
 use crate::physics::geodesic::{Constants, turned, wrap_angle};
-use crate::physics::orbit::horizon_outer;
+use crate::physics::orbit::{horizon_inner, horizon_outer};
 use crate::physics::rain::OffsetSeries;
 use crate::physics::rain_motion::rain_velocity;
 use glam::DVec3;
@@ -28,6 +28,9 @@ pub(crate) const CLUMPED: f64 = 10.0;
 
 /// Structure has texels where Gaussians are at least this; beyond, the last ones go on.
 const LEAST_STRUCTURED: f64 = 1e-6;
+
+/// 1 - r+ / r is at least this where cells are counted: nearer, no light shows.
+pub(crate) const LEAST_BESIDE: f64 = 1e-5;
 
 /// How exactly the matter along rays is summed.
 #[derive(Clone, Copy, Debug)]
@@ -83,8 +86,11 @@ pub struct VolumeMatter {
 /// A hot spot of a frame.
 #[derive(Clone, Debug)]
 pub struct SpotMatter {
-    /// That of its orbit; 0 in free fall, as the next but one.
+    /// That of its orbit; 0 in free fall.
     pub radius: f64,
+    /// Of one in free fall, r+, and the rain time that light takes outwards from beside the horizon while 1 - r+ / r
+    /// grows by e: 4 r+ / (r+ - r-). In that time the spot moves on.
+    pub lingers: Option<[f64; 2]>,
     pub size: f64,
     /// Azimuth of its centre at the time `When::time`, and its change in time, towards +ph.
     pub azimuth: f64,
@@ -200,12 +206,14 @@ impl SpotMatter {
             brightness: spot.brightness,
         };
         if let Some(body) = &spot.free {
-            let centre = FreeCentre::new(spin, body, spot.size, series?, when.time, when.delayed)?;
+            let centre = FreeCentre::new(spin, body, spot.size, series?, when)?;
             // One that is too small for the samples along rays from far away is shown wider.
             let size = spot.size.max(HotSpot::SMALLEST * centre.r);
             let ([low, high], cos) = centre.reach(HotSpot::CUT * size, horizon_outer(spin));
+            let (r_plus, r_minus) = (horizon_outer(spin), horizon_inner(spin));
             return Some(Self {
                 radius: 0.0,
+                lingers: Some([r_plus, 4.0 * r_plus / (r_plus - r_minus)]),
                 size,
                 azimuth: 0.0,
                 angular_velocity: 0.0,
@@ -222,6 +230,7 @@ impl SpotMatter {
         let low = (radius - cut).max(horizon_outer(spin));
         Some(Self {
             radius,
+            lingers: None,
             size: spot.size,
             azimuth: wrap_angle((spot.azimuth + sense * angular_velocity * when.time) % std::f64::consts::TAU),
             angular_velocity: sense * angular_velocity,
@@ -269,7 +278,11 @@ impl SpotMatter {
     pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
         let [a, b] = stretch.u;
         let across = stretch.swept / a.min(b).max(1e-30);
-        (1.0 / a - 1.0 / b).hypot(across) / self.size
+        let passed = self.lingers.map_or(0.0, |[r_plus, time]| {
+            let [beside, before] = [a, b].map(|u| (1.0 - r_plus * u).max(LEAST_BESIDE));
+            time * (beside / before).ln().abs()
+        });
+        ((1.0 / a - 1.0 / b).hypot(across) + passed) / self.size
     }
 }
 

@@ -231,7 +231,7 @@ static void flags_and_kinds(Watch *watch, BhrContext *context) {
     }
 }
 
-/* A spot that falls from (9, 0, 2) M, the context's hole being of 1 M. */
+/* A spot that falls from not far outside the hole. */
 static BhrHotSpot a_free_spot(void) {
     BhrHotSpot spot = a_spot();
     spot.flags = BHR_HOT_SPOT_FREE;
@@ -288,9 +288,9 @@ static void free_spots(Watch *watch, BhrContext *context) {
         finite_frame(context, "the time of free spots", i);
         CHECK_OK(bhr_set_effects(context, BHR_EFFECT_ALL & ~BHR_EFFECT_LIGHT_DELAY));
         finite_frame(context, "free spots in fast light", i);
-        CHECK_OK(bhr_set_effects(context, BHR_EFFECT_ALL));
+        CHECK_OK(bhr_set_effects(context, watch->effects));
     }
-    CHECK_OK(bhr_set_time(context, 0.0));
+    CHECK_OK(bhr_set_time(context, watch->time));
     BhrHotSpot read[2];
     uint32_t   count = 0;
     CHECK_OK(bhr_get_hot_spots(context, read, sizeof read[0], 2, &count));

@@ -250,6 +250,7 @@ fn all() -> Vec<(&'static str, String)> {
         INNER_FADE: vec2 = shape::INNER_FADE;
         OUTER_FADE: vec2 = shape::OUTER_FADE;
         SPOT_CUT: f32 = HotSpot::CUT;
+        LEAST_BESIDE: f32 = matter::LEAST_BESIDE;
         SHAPE_DISK: u32 = Shape::Disk;
         SHAPE_TORUS: u32 = Shape::Torus;
         SHAPE_HALO: u32 = Shape::Halo;

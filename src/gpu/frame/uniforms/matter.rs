@@ -123,6 +123,8 @@ impl From<&SpotMatter> for MatterUniform {
                 motion: MotionCode::Free as u32,
                 law: [begin as f32, (end - begin) as f32],
                 size: spot.size as f32,
+                radius: spot.lingers.map_or(0.0, |[r_plus, _]| r_plus) as f32,
+                width: spot.lingers.map_or(0.0, |[_, time]| time) as f32,
                 inner: f32::from(centre.is_denser_at_end()),
                 thickness: 1.0,
                 ..Self::new(SHAPE_FREE_SPOT, &spot.flow, &spot.glow, &spot.reach, least)
