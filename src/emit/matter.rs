@@ -88,7 +88,7 @@ pub struct VolumeMatter {
 pub struct SpotMatter {
     /// That of its orbit; 0 in free fall.
     pub radius: f64,
-    /// Of one in free fall, r+, and the rain time that light takes outwards from beside the horizon while 1 - r+ / r
+    /// In free fall: r+, and the rain time that light takes outwards from beside the horizon while 1 - r+ / r
     /// grows by e: 4 r+ / (r+ - r-). In that time the spot moves on.
     pub lingers: Option<[f64; 2]>,
     pub size: f64,
