@@ -231,7 +231,7 @@ REFUSED = [
     ("mass", 0.0),
     ("mass", math.nan),
     ("mass", -math.inf),
-    ("spin", 1.0),
+    ("spin", 1.5),
     ("spin", math.nan),
     ("axis", (0.0, 0.0, 0.0)),
     ("axis", (math.nan, 0.0, 1.0)),

@@ -222,7 +222,7 @@ pub const BHR_HOT_SPOT_THERMAL: u32 = 2u32;
 /// BhrHotSpot.flags: the centre is a body in free fall, which position, velocity and time tell; radius, azimuth and
 /// RETROGRADE have no meaning.
 pub const BHR_HOT_SPOT_FREE: u32 = 4u32;
-/// BhrHotSpot.flags, with FREE: they are told in BHR_CHART_RAIN, else in BHR_CHART_STATIC.
+/// BhrHotSpot.flags: with FREE, these are told in BHR_CHART_RAIN instead of BHR_CHART_STATIC.
 pub const BHR_HOT_SPOT_RAIN: u32 = 8u32;
 
 /// A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7
