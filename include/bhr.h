@@ -753,7 +753,7 @@ typedef struct BhrVolume {
  * RETROGRADE have no meaning. */
 #define BHR_HOT_SPOT_FREE 4u
 
-/** BhrHotSpot.flags, with FREE: they are told in BHR_CHART_RAIN, else in BHR_CHART_STATIC. */
+/** BhrHotSpot.flags: with FREE, these are told in BHR_CHART_RAIN instead of BHR_CHART_STATIC. */
 #define BHR_HOT_SPOT_RAIN 8u
 
 /** A glowing blob, by default on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7

@@ -364,7 +364,7 @@ export interface Volume {
  */
 export interface HotSpot {
     /**
-     * Any of "retrograde" | "thermal" | "free" | BHR_HOT_SPOT_RAIN. Default 0.
+     * Any of "retrograde" | "thermal" | "free" | "rain". Default 0.
      * @default []
      */
     flags: readonly HotSpotFlag[];

@@ -111,7 +111,9 @@ export type HotSpotFlag =
      * The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have no
      * meaning.
      */
-    | "free";
+    | "free"
+    /** With FREE, these are told in "rain" instead of "static". */
+    | "rain";
 
 /**
  * The way in which light is followed. Frames by different methods differ by less than their errors, which
