@@ -147,7 +147,7 @@ const Field VOLUME_FIELDS[] = {
 
 static const Choice HOT_SPOT_FLAGS[] = {
     {"retrograde", BHR_HOT_SPOT_RETROGRADE}, {"thermal", BHR_HOT_SPOT_THERMAL}, {"free", BHR_HOT_SPOT_FREE},
-    {NULL, 0}};
+    {"rain", BHR_HOT_SPOT_RAIN}, {NULL, 0}};
 
 const Field HOT_SPOT_FIELDS[] = {
     {"--retrograde", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
@@ -157,6 +157,8 @@ const Field HOT_SPOT_FIELDS[] = {
     {"--free", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
      "the centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE "
      "have no meaning", &HOT_SPOT_FLAGS[2]},
+    {"--rain", OPTION_BIT, offsetof(BhrHotSpot, flags), NULL, 0, 0, NULL,
+     "with FREE, these are told in BHR_CHART_RAIN instead of BHR_CHART_STATIC", &HOT_SPOT_FLAGS[3]},
     {"--radius", OPTION_DOUBLE, offsetof(BhrHotSpot, radius), "M", 1, 1000, "1 .. 1000",
      "in M, 1 .. 1000", NULL},
     {"--size", OPTION_DOUBLE, offsetof(BhrHotSpot, size), "M", 0.05, 250, "0.05 .. 250",

@@ -374,6 +374,8 @@ enum class HotSpotFlags : std::uint32_t {
     /// The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have
     /// no meaning.
     free = BHR_HOT_SPOT_FREE,
+    /// With FREE, these are told in BHR_CHART_RAIN instead of BHR_CHART_STATIC.
+    rain = BHR_HOT_SPOT_RAIN,
 };
 
 /// Bits of BhrImage.flags.

@@ -150,7 +150,7 @@ unsafe impl Described for BhrHotSpot {
         Field {
             name: "flags",
             offset: offset_of!(BhrHotSpot, flags),
-            kind: Kind::Bits(&[("retrograde", 1), ("thermal", 2), ("free", 4)]),
+            kind: Kind::Bits(&[("retrograde", 1), ("thermal", 2), ("free", 4), ("rain", 8)]),
         },
         Field { name: "radius", offset: offset_of!(BhrHotSpot, radius), kind: Kind::Numbers(1) },
         Field { name: "size", offset: offset_of!(BhrHotSpot, size), kind: Kind::Numbers(1) },

@@ -370,6 +370,8 @@ class HotSpotFlags(enum.IntFlag):
     #: The centre is a body in free fall, which position, velocity and time tell; radius, azimuth and RETROGRADE have no
     #: meaning.
     FREE = 4
+    #: With FREE, these are told in BHR_CHART_RAIN instead of BHR_CHART_STATIC.
+    RAIN = 8
 
 
 class SkyFlags(enum.IntFlag):

@@ -220,7 +220,7 @@ class HotSpot(Struct):
     size: float = 0.8
     #: The centre at scene time 0, radians within +-1e6. Default 0.
     azimuth: float = 0.0
-    #: Any of HotSpotFlags.RETROGRADE | HotSpotFlags.THERMAL | HotSpotFlags.FREE | BHR_HOT_SPOT_RAIN. Default 0.
+    #: Any of HotSpotFlags.RETROGRADE | HotSpotFlags.THERMAL | HotSpotFlags.FREE | HotSpotFlags.RAIN. Default 0.
     flags: Named[HotSpotFlags, str] = named(HotSpotFlags(0))
     #: Per M at the centre, 0 .. 1e6. Default 0.
     absorption: float = 0.0
