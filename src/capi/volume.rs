@@ -244,7 +244,7 @@ pub struct BhrHotSpot {
     pub flags: u32,
     /// In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
     pub radius: f64,
-    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
+    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: from 0.05 to 250. Default 0.8.
     pub size: f64,
     /// The centre at scene time 0, radians within +-1e6. Default 0.
     pub azimuth: f64,
