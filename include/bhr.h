@@ -772,10 +772,10 @@ typedef struct BhrHotSpot {
     uint32_t flags;
     /** In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8. */
     double radius;
-    double size;           /**< In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8. */
-    double azimuth;        /**< The centre at scene time 0, radians within +-1e6. Default 0. */
-    double absorption;     /**< Per M at the centre, 0 .. 1e6. Default 0. */
-    double temperature;    /**< Kelvin, 500 .. 1e9. Default 10000. */
+    double size; /**< In M, 0.05 .. radius / 4, and at least radius / 200; FREE: from 0.05 to 250. Default 0.8. */
+    double azimuth; /**< The centre at scene time 0, radians within +-1e6. Default 0. */
+    double absorption; /**< Per M at the centre, 0 .. 1e6. Default 0. */
+    double temperature; /**< Kelvin, 500 .. 1e9. Default 10000. */
     double spectral_index; /**< Without THERMAL: -4 .. 4. Default 1. */
     /** Without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1. */
     double tint[3];

@@ -375,8 +375,8 @@ export interface HotSpot {
      */
     radius: number;
     /**
-     * In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
-     * @range 0.05 .. 250 M
+     * In M, 0.05 .. radius / 4, and at least radius / 200; FREE: from 0.05 to 250. Default 0.8.
+     * @unit M
      * @default 0.8
      */
     size: number;

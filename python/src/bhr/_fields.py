@@ -216,7 +216,7 @@ class HotSpot(Struct):
 
     #: In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
     radius: float = 8.0
-    #: In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250. Default 0.8.
+    #: In M, 0.05 .. radius / 4, and at least radius / 200; FREE: from 0.05 to 250. Default 0.8.
     size: float = 0.8
     #: The centre at scene time 0, radians within +-1e6. Default 0.
     azimuth: float = 0.0
