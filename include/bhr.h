@@ -762,10 +762,8 @@ typedef struct BhrVolume {
  * light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
  * (docs/matter.md).
  *
- * With BHR_HOT_SPOT_FREE the centre moves on any geodesic, followed both ways for some six hundred turns about the
- * hole and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart at one rain
- * time, and all of it has the velocity that rain observers see of the centre. Farther out than 200 sizes it is shown
- * as if its size were r / 200. @since 0.2.0 */
+ * With BHR_HOT_SPOT_FREE the centre moves on any geodesic, for some six hundred turns about the hole before and
+ * after `time` and out to 1e4 M, and distances are those of Doran's chart. @since 0.2.0 */
 typedef struct BhrHotSpot {
     uint32_t struct_size; /**< sizeof(BhrHotSpot). */
     /** Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL | BHR_HOT_SPOT_FREE | BHR_HOT_SPOT_RAIN. Default 0. */

@@ -160,7 +160,7 @@ struct HotSpot {
     HotSpotFlags flags;
     /// In M, 1 .. 1000.
     double radius;
-    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: 0.05 .. 250.
+    /// In M, 0.05 .. radius / 4, and at least radius / 200; FREE: from 0.05 to 250.
     double size;
     /// The centre at scene time 0, radians within +-1e6.
     double azimuth;

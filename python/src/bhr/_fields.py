@@ -206,10 +206,8 @@ class HotSpot(Struct):
     7 sizes, d being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does,
     at dph/dt = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M; parts that would be faster than
     light, beside the hole, are left out. It shines and absorbs as BhrVolume says, and its delay matters
-    (docs/matter.md). With HotSpotFlags.FREE the centre moves on any geodesic, followed both ways for some six hundred
-    turns about the hole and out to 1e4 M; one that falls in is gone when it has. Distances are those of Doran's chart
-    at one rain time, and all of it has the velocity that rain observers see of the centre. Farther out than 200 sizes
-    it is shown as if its size were r / 200."""
+    (docs/matter.md). With HotSpotFlags.FREE the centre moves on any geodesic, for some six hundred turns about the hole
+    before and after `time` and out to 1e4 M, and distances are those of Doran's chart."""
 
     c_name: ClassVar[str] = "BhrHotSpot"
     c_enums = {"flags": HotSpotFlags}
