@@ -154,7 +154,7 @@ panel_takes_clicks() {
     panel_type_into 150 561 2 '^matter volumes 2 hot spots 0$' || return 1
     panel_type_into 150 579 1 '^matter volumes 2 hot spots 1$' || return 1
     # A refusal is written below its slider, and moves all that follows.
-    panel_type_into 200 84 1.5 '^refused .*1\.5.*0\.999' || return 1
+    panel_type_into 200 84 1.5 '^refused .*1\.5.*\[-1, 1\]' || return 1
     panel_expect "$(panel_last '^(scene|refused) ' | cut -d ' ' -f 1)" refused || return 1 # the scene is as it was
 
     panel_close "$middle_x" "$middle_y"
