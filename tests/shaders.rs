@@ -152,6 +152,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
+    ("camera/chart", "doran_turn", "for (var i = 0u; i < 12u; i += 1u)", CONSTANT),
     ("camera/chart", "rain_offsets", "for (var i = OFFSET_PAIRS - 1u; i > 0u; i--)", CONSTANT),
     ("emit/bake", "bake_texels", "for (var k = 0u; k < ROW_GENERATIONS; k += 1u)", CONSTANT),
     ("emit/layers", "add_alone", "for (var span = 0u; span < spans && !is_dark(); span += 1u)", LAYERS),

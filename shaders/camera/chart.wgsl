@@ -6,12 +6,35 @@
 #import geodesic/geodesic
 #import shared/frame
 
-// The offsets of a ray's chart at u from that of Boyer and Lindquist: 0 without RAIN.
+// By how much azimuth and time that a ray is traced in differ at u from those of Boyer and Lindquist: 0 without RAIN,
+// with it Kerr's azimuth and, where delays are wanted, Doran's time.
 fn chart_offsets(c: Constants, u: f32) -> vec2<f32> {
     if !(SPINNING && RAIN) {
         return vec2<f32>(0.0);
     }
-    return rain_offsets(c, u);
+    if !DELAY {
+        return vec2<f32>(kerr_offset(c, u), 0.0);
+    }
+    return vec2<f32>(kerr_offset(c, u), rain_offsets(c, u).y);
+}
+
+// Kerr's azimuth less Boyer and Lindquist's outside the horizon: kerr_offset of rain.rs.
+fn kerr_offset(c: Constants, u: f32) -> f32 {
+    let outer = max(1.0 - c.r_plus * u, HORIZON_ROOM);
+    let inner = max(1.0 - c.r_minus * u, HORIZON_ROOM);
+    return c.a / (c.r_plus - c.r_minus) * log(outer / inner);
+}
+
+// Doran's azimuth less Kerr's: doran_turn of rain.rs, in four panels in sqrt(u).
+fn doran_turn(c: Constants, u: f32) -> f32 {
+    let width = 0.25 * sqrt(max(u, 0.0));
+    var sum = 0.0;
+    for (var i = 0u; i < 12u; i += 1u) {
+        let v = width * (f32(i / 3u) + GAUSS_NODES[i % 3u]);
+        let q = sqrt(1.0 + c.a * c.a * v * v * v * v);
+        sum += GAUSS_WEIGHTS[i % 3u] * v / (q * (q + 1.4142135624 * v));
+    }
+    return 2.0 * c.a * width * sum;
 }
 
 // Doran's azimuth and time less those of Boyer and Lindquist at u, outside the horizon.

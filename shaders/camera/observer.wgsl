@@ -196,7 +196,7 @@ fn begin_spinning_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     (*begin).c = constants(energy, s * around, carter, k, e);
     (*begin).carter = carter;
     (*begin).state =
-        State(u, du, frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * around), 0.0, 0.0);
+        State(u, du, frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * around), frame.kerr_turn, 0.0);
     // Inside the horizon, P > 0 at r+.
     let from_outside = energy * (frame.r_plus * frame.r_plus + a * a) > a * s * around;
     (*begin).has_light = from_outside || u * frame.r_plus < 1.0;

@@ -32,7 +32,7 @@ fn step_course(c: Constants, a: State, b: State, h: f32) -> StepCourse {
 
 fn drag_slope(c: Constants, s: State) -> f32 {
     if SPINNING && RAIN {
-        return rain_drag_rate(c, s.u, s.du) + c.a * s.du / (1.0 + sqrt(2.0 * max(s.u, 0.0)));
+        return kerr_drag_rate(c, s.u, s.du);
     }
     return drag_rate(c, s.u);
 }

@@ -2,6 +2,7 @@
 // The matter along a part of a ray as far as the host's things let it be seen. Mirrors `Limit` of src/emit/along.rs.
 
 #import constants
+#import camera/chart
 #import emit/occluder
 #import emit/volumes
 #import geodesic/geodesic
@@ -16,7 +17,12 @@ fn beyond_occluder(c: Constants, from_state: State, tau: f32) -> f32 {
     // Near infinity, and past it, where u < 0, everything is; squares of such distances are beyond single precision.
     var distance = 1e30;
     if there.u > 1e-16 {
-        distance = length(chart_direction(there.n, there.drag) / there.u - frame.e_r.xyz / frame.observer_u);
+        // The host's things are told in the observer's chart.
+        var drag = there.drag;
+        if SPINNING && RAIN {
+            drag += doran_turn(c, there.u);
+        }
+        distance = length(chart_direction(there.n, drag) / there.u - frame.e_r.xyz / frame.observer_u);
     }
     let eye = 1.0 / frame.observer_u;
     // Beyond infinite distances nothing is, nor beyond NaN; all is beyond those below 0.

@@ -83,18 +83,9 @@ fn turn_rate(c: Constants) -> f32 {
     return sqrt(abs(c.k) + 2.0 * abs(c.a2e2));
 }
 
-// drag' in Doran's chart without what rain_drag_boundary holds.
-fn rain_drag_rate(c: Constants, u: f32, du: f32) -> f32 {
-    let w = sqrt(2.0 * max(u, 0.0));
-    let au2 = c.a * c.a * u * u;
-    let q = sqrt(1.0 + au2);
-    let rest = au2 * (1.0 + q + w) / ((1.0 + q) * q * (q + w) * (1.0 + w));
-    return -c.a * (advanced_rate(c, u, du) - c.energy + du * rest);
-}
-
-fn rain_drag_boundary(c: Constants, u: f32) -> f32 {
-    let w = sqrt(2.0 * max(u, 0.0));
-    return c.a * (w - log(1.0 + w));
+// drag' to Kerr's azimuth.
+fn kerr_drag_rate(c: Constants, u: f32, du: f32) -> f32 {
+    return -c.a * (advanced_rate(c, u, du) - c.energy);
 }
 
 fn drag_rate(c: Constants, u: f32) -> f32 {

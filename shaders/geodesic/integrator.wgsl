@@ -83,7 +83,8 @@ fn turn_n(c: Constants, s: State, h: f32, end: ptr<function, State>) {
     (*end).dn = s.dn * turn.y - s.n * (turn.x * kappa);
 }
 
-// Drag and delay in Doran's chart over one step, by Gauss-Legendre on the dense output: their rates need u'.
+// Drag, to Kerr's azimuth, and rain time's delay over one step, by Gauss-Legendre on the dense output: their rates need
+// u'.
 fn rain_step(c: Constants, s: State, h: f32, end: ptr<function, State>) {
     let u = quintic_of_u(c, s, *end, h);
     let n_z = quintic_of_n_z(c, s, *end, h);
@@ -95,29 +96,20 @@ fn rain_step(c: Constants, s: State, h: f32, end: ptr<function, State>) {
         let x = GAUSS_NODES[i];
         let there = quintic_at(u, x);
         let slope = quintic_slope(u, x) * by_tau;
-        drag += GAUSS_WEIGHTS[i] * rain_drag_rate(c, there, slope);
+        drag += GAUSS_WEIGHTS[i] * kerr_drag_rate(c, there, slope);
         if DELAY {
             delay += GAUSS_WEIGHTS[i] * rain_delay_rate(c, there, slope, quintic_at(n_z, x));
         }
     }
-    (*end).drag += h * drag + (rain_drag_boundary(c, (*end).u) - rain_drag_boundary(c, s.u));
+    (*end).drag += h * drag;
     (*end).delay += h * delay;
-}
-
-// `end` with the closed-form part of the drag since `begin`.
-fn with_drag_boundary(c: Constants, begin: State, end: State) -> State {
-    var there = end;
-    if SPINNING && RAIN {
-        there.drag += rain_drag_boundary(c, end.u) - rain_drag_boundary(c, begin.u);
-    }
-    return there;
 }
 
 fn derivative(c: Constants, s: State) -> State {
     var drag = 0.0;
     var delay = 0.0;
     if SPINNING && RAIN {
-        drag = rain_drag_rate(c, s.u, s.du);
+        drag = kerr_drag_rate(c, s.u, s.du);
         if DELAY {
             delay = rain_delay_rate(c, s.u, s.du, s.n.z);
         }
@@ -146,7 +138,7 @@ fn rk4_step(c: Constants, s: State, h: f32) -> State {
     let k3 = derivative(c, advance(s, 0.5 * h, k2));
     let k4 = derivative(c, advance(s, h, k3));
     let sum = blend(1.0, blend(1.0 / 6.0, k1, 1.0 / 3.0, k2), 1.0, blend(1.0 / 3.0, k3, 1.0 / 6.0, k4));
-    return with_drag_boundary(c, s, advance(s, h, sum));
+    return advance(s, h, sum);
 }
 
 // Dormand & Prince 1980, RK5(4)7M.
@@ -168,7 +160,7 @@ fn dormand_prince_step(c: Constants, s: State, h: f32) -> Step {
     let k7 = derivative(c, end);
     let e = blend(1.0, blend(1.0, blend(71.0 / 57600.0, k1, -71.0 / 16695.0, k3), 1.0,
         blend(71.0 / 1920.0, k4, -17253.0 / 339200.0, k5)), 1.0, blend(22.0 / 525.0, k6, -1.0 / 40.0, k7));
-    return Step(with_drag_boundary(c, s, end), h * error_norm(c, end, e));
+    return Step(end, h * error_norm(c, end, e));
 }
 
 fn error_norm(c: Constants, s: State, error: State) -> f32 {

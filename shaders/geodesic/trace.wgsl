@@ -156,8 +156,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
 // The drag over what is left of a step, to first order.
 fn drag_over(c: Constants, s: State, rest: f32) -> f32 {
     if SPINNING && RAIN {
-        return rain_drag_rate(c, s.u, s.du) * rest + rain_drag_boundary(c, s.u + s.du * rest)
-            - rain_drag_boundary(c, s.u);
+        return kerr_drag_rate(c, s.u, s.du) * rest;
     }
     return drag_rate(c, s.u) * rest;
 }

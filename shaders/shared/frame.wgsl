@@ -97,6 +97,8 @@ struct Frame {
     // ThinDisk::least_profile of src/emit/thin_disk.rs: 1/r beyond which it counts, and the profile; 0 without.
     least_profile_u: f32,
     least_profile: f32,
+    // In Doran's chart: Kerr's azimuth less Doran's at the observer.
+    kerr_turn: f32,
     // `least` of DiskEdges in src/scene/refine.rs: outer, inner.
     shown_edges: vec2<f32>,
     // Light that need not be told exactly at half resolution, and the tolerance there (`Evenness` of src/emit/half.rs).

@@ -226,6 +226,12 @@ impl Constants {
         -self.a * u * (2.0 * self.energy - self.a * self.angular_momentum * u) / self.horizon_function(u)
     }
 
+    /// drag' to Kerr's azimuth (`rain::doran_turn`): -a (x - E).
+    #[inline(always)]
+    pub fn kerr_drag_rate(&self, u: f64, du: f64) -> f64 {
+        -self.a * (self.advanced_rate(u, du) - self.energy)
+    }
+
     /// drag' in Doran's chart, without what `rain_drag_boundary` holds in closed form: near infinity it goes as
     /// sqrt(u), which no step would meet.
     ///
@@ -236,7 +242,7 @@ impl Constants {
         let au2 = (self.a * u).powi(2);
         let q = (1.0 + au2).sqrt();
         let rest = au2 * (1.0 + w / (1.0 + q)) / (q * (q + w) * (1.0 + w));
-        -self.a * (self.advanced_rate(u, du) - self.energy + du * rest)
+        self.kerr_drag_rate(u, du) - self.a * du * rest
     }
 
     /// d(azimuth of the chart) / d tau beyond what N turns, in whichever chart the clock has.

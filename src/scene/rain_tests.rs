@@ -2,6 +2,7 @@
 //! Tests of cameras and rays in the chart RAIN: what is told in both charts is the same, and a fall is smooth.
 
 use super::host_rays::trace_ray;
+use super::trace::SKY_STEP;
 use super::{Camera, Chart, Disk, Fate, Motion, Projection, Ray, Region, Scene, Transport};
 use crate::physics::geodesic::{RAIN_CLOCK_RADIUS, turned};
 use crate::physics::metric::chart;
@@ -114,6 +115,41 @@ fn rays_of_rain_cameras_are_those_of_tracers() {
     }
     println!("{skies} skies {:.1e}, g {:.1e}; {crossings} crossings {:.1e}", worst[0], worst[1], worst[2]);
     assert!(skies > 300 && crossings > 200 && worst[0] < 1e-9 && worst[1] < 1e-11, "{skies} {crossings} {worst:?}");
+}
+
+/// The step of pixels that show the sky alone leaves directions within a small part of a pixel: the error is counted
+/// against how much the direction changes with the look, in units of looks.
+#[test]
+fn steps_of_pixels_of_the_sky_are_short_enough() {
+    let mut random = Random(77);
+    let mut errors = Vec::new();
+    for spin in [0.5, -0.9, 0.998] {
+        for part in [0.02, 0.3, 0.6, 1.0] {
+            let r = horizon_inner(spin) + part * (2.95 - horizon_inner(spin));
+            let mut scene = Scene { disk: None, ..scene(spin, Camera::plain()) };
+            scene.camera = camera(&scene, Chart::Rain, Motion::FreeFall, [r, 1.2, 0.7]);
+            let frame = scene.lens(&REGION).unwrap().observer.frame;
+            let (coarse, exact) = (scene.pixel_settings(), scene.quality.ray_settings(spin));
+            assert_eq!(coarse.step, SKY_STEP, "{spin} {r}");
+            for _ in 0..100 {
+                let n = chart(1.0, 3.1 * random.next(), 6.2 * random.next());
+                let (across, down) = n.any_orthonormal_pair();
+                let [right, below] = [across, down].map(|side| (n + side * 1e-5).normalize());
+                let rays = [(n, &coarse), (n, &exact), (right, &exact), (below, &exact)].map(|(n, settings)| {
+                    let seen = trace_look(&frame, n, settings).1;
+                    (seen.fate == trace::Fate::Escaped).then_some(seen.direction)
+                });
+                if let [Some(found), Some(sky), Some(right), Some(below)] = rays {
+                    let change = (right - sky).length().max((below - sky).length()) / 1e-5;
+                    errors.push((found - sky).length() / (1.0 + change));
+                }
+            }
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let [middle, most, worst] = [0.5, 0.99, 1.0].map(|part| errors[((errors.len() - 1) as f64 * part) as usize]);
+    println!("{} skies at step {SKY_STEP}: {middle:.1e}, 99 % {most:.1e}, {worst:.1e}", errors.len());
+    assert!(errors.len() > 400 && middle < 1e-6 && most < 1e-4 && worst < 2e-4);
 }
 
 /// Boosts made one after the other are the boost and the turn that `carried_by` says.

@@ -4,10 +4,10 @@
 
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
-use super::{Chart, Method, Quality, Scene, VolumeResolution};
+use super::{Chart, Method, Motion, Quality, Scene, VolumeResolution};
 use crate::emit::Emitters;
 use crate::emit::half::{Evenness, LEAST_LIGHT, STRUCTURE_TOLERANCE, TOLERANCE};
-use crate::physics::geodesic::{Clock, Constants, State};
+use crate::physics::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
@@ -22,6 +22,10 @@ pub const RAY_STEP: f64 = 0.025;
 /// Step in sigma of the Nystrom method for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7
 /// for crossing radii, at most 1e-5; a pixel of a 3840 x 2160 frame is 5e-4 wide.
 pub const PIXEL_STEP: f64 = 0.25;
+/// The step of pixels that show the sky alone, in Doran's chart about a spinning hole. Measured from just above r- to
+/// 2.95 M at spins to 0.998, with errors counted against how much directions change with the look: half are within
+/// 1e-6, and 99 % within 1e-4. A pixel of a 3840 x 2160 frame is 2e-4 to 5e-4 wide.
+pub const SKY_STEP: f64 = 0.35;
 
 impl Quality {
     /// The settings of the f64 tracer for rays that a host asks for.
@@ -54,13 +58,22 @@ impl Scene {
     pub fn pixel_settings_of(&self, emitters: &Emitters) -> Settings {
         let mut settings = self.quality.ray_settings(self.hole.spin);
         if self.quality.method == Method::Auto {
-            settings.step = PIXEL_STEP;
+            let sky_alone = emitters.plane_u().is_none() && !emitters.needs().parts;
+            settings.step = if sky_alone && self.traces_dorans_chart() { SKY_STEP } else { PIXEL_STEP };
         }
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
         settings.delay = emitters.needs().delays;
         settings.capture_u = self.pixel_capture_u(emitters);
         settings.opaque_u = emitters.opaque_u().filter(|_| self.view == super::View::Light);
         settings
+    }
+
+    /// Whether pixels are traced in Doran's chart about a spinning hole.
+    fn traces_dorans_chart(&self) -> bool {
+        let (hole, camera) = (&self.hole, &self.camera);
+        let rests = matches!(camera.motion, Motion::Static | Motion::Orbit);
+        let r = camera.position.length() / hole.mass;
+        hole.spin != 0.0 && camera.chart == Chart::Rain && !rests && r <= RAIN_CLOCK_RADIUS
     }
 
     pub fn shows_stars(&self) -> bool {

@@ -4,9 +4,9 @@
 use super::inputs::{Inputs, Outputs};
 use super::scenes::{self, FRAME, FRAMES, Kind, View, push_look, push_place, view};
 use super::{Group, ROUNDING, SAME, twin};
-use crate::physics::geodesic::{Constants, State};
+use crate::physics::geodesic::{Clock, Constants, State};
 use crate::physics::orbit::{horizon_outer, redshift};
-use crate::physics::rain::offsets;
+use crate::physics::rain::{doran_turn, kerr_offset, offsets};
 use crate::scene::Projection;
 use crate::scene::observer::Lens;
 use crate::scene::record::polar_momentum;
@@ -95,6 +95,9 @@ fn put_begun(c: &Constants, s: &State, o: &mut Outputs) {
     o.near(s.du / nu, 1.0);
     o.all(s.n.to_array(), 1.0);
     o.all((s.dn / nu).to_array(), momentum);
+    // The shaders' drag leads to Kerr's azimuth, f64's from the observer's.
+    let is_doran = c.clock == Clock::Rain;
+    o.near(s.drag - if is_doran { doran_turn(c.a, s.u) } else { 0.0 }, 1.0);
     o.word(c.clock as u32);
 }
 
@@ -229,7 +232,8 @@ pub fn group() -> Group {
         out4(vec4<f32>(b.c.k, b.c.b, b.c.a2e2, b.c.a2q) / (nu * nu));
         out1(b.c.scale / nu); out3(vec3<f32>(b.c.r_plus, b.c.r_minus, b.c.a));
         let p = polar_momentum(b, 2.0); out1(p * p);
-        out1(b.state.u); out1(b.state.du / nu); out3(b.state.n); out3(b.state.dn / nu); out_word(b.c.clock);";
+        out1(b.state.u); out1(b.state.du / nu); out3(b.state.n); out3(b.state.dn / nu);
+        out1(b.state.drag); out_word(b.c.clock);";
     let begins = [
         ("begin_local begin_zamo constants polar_momentum", Kind::Spinning, spinning),
         ("begin_local begin_zamo constants polar_momentum", Kind::Static, plain),
@@ -256,9 +260,10 @@ pub fn group() -> Group {
     twins.push(
         twin(
             "camera/chart",
-            "chart_offsets rain_offsets",
-            "enter_scene(); let c = begin_local(normalize(in3(1u))).c;
-             let offsets = chart_offsets(c, in1(4u)); out2(offsets);",
+            "chart_offsets kerr_offset rain_offsets doran_turn",
+            "enter_scene(); let c = begin_local(normalize(in3(1u))).c; let u = in1(4u);
+             let offsets = chart_offsets(c, u); out1(offsets.x);
+             let dorans = rain_offsets(c, u); out2(dorans); out1(doran_turn(c, u));",
             |i| {
                 let view = Kind::SpinningRain.push(i);
                 push_look(i, view);
@@ -266,12 +271,14 @@ pub fn group() -> Group {
                 i.even(1e-3, 0.99 / horizon_outer(view.scene.hole.spin));
             },
             |i, o| {
-                let a = view(i).scene.hole.spin;
-                let expected = offsets(a, i.x(4));
+                let (a, u) = (view(i).scene.hole.spin, i.x(4));
+                let expected = offsets(a, u);
                 // Terms of the size of 1 / (r+ - r-) cancel.
                 let size = 2.0 / ((1.0 - a) * (1.0 + a)).sqrt();
+                o.near(kerr_offset(a, u), size);
                 o.near(expected.azimuth, size);
-                o.near(expected.time, size + 3.0 / i.x(4).sqrt());
+                o.near(expected.time, size + 3.0 / u.sqrt());
+                o.near(doran_turn(a, u), 1.0);
             },
             // Terms of the series that f32 leaves out, and the uniform.
             UNIFORM,

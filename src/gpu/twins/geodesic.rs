@@ -423,14 +423,12 @@ pub fn group() -> Group {
         .with(&rain),
         twin(
             geodesic,
-            "rain_drag_rate rain_drag_boundary",
-            "let c = ray_constants(); let s = ray_state(13u);
-             out2(vec2<f32>(rain_drag_rate(c, s.u, s.du), rain_drag_boundary(c, s.u)));",
+            "kerr_drag_rate",
+            "let c = ray_constants(); let s = ray_state(13u); out1(kerr_drag_rate(c, s.u, s.du));",
             spinning_rain_ray,
             |i, o| {
                 let (c, s) = (constants(i), state(i, STATE));
-                o.near(c.rain_drag_rate(s.u, s.du), rain_size(&c, &s));
-                o.near(c.rain_drag_boundary(s.u), 1.0);
+                o.near(c.kerr_drag_rate(s.u, s.du), rain_size(&c, &s));
             },
             TRANSCENDENTAL,
         )

@@ -7,9 +7,10 @@ use super::geodesic::{
 };
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, twin};
-use crate::physics::geodesic::{Constants, State};
+use crate::physics::geodesic::{Clock, Constants, State};
 use crate::physics::integrator::{Method, Quintic, held_inside, nystrom_step, rk4_step, step, step_limit};
 use crate::physics::lens::critical::capture_margin;
+use crate::physics::rain::doran_turn;
 use crate::physics::trace::{self, Fate, RayTrace, Segment, Settings, find_crossing, land, time_to_horizon};
 use glam::DVec3;
 
@@ -66,6 +67,12 @@ fn with_rain_step(i: &mut Inputs, [low, high]: [f64; 2]) {
     }
 }
 
+/// `to`, with what the shaders have for the drag since `from`: in Doran's chart they follow Kerr's azimuth.
+fn as_shaders_have_it(c: &Constants, from: &State, to: &State) -> State {
+    let turn = if c.clock == Clock::Rain { doran_turn(c.a, to.u) - doran_turn(c.a, from.u) } else { 0.0 };
+    State { drag: to.drag - turn, ..*to }
+}
+
 fn put_state(o: &mut Outputs, from: &State, to: &State, h: f64) {
     o.near(to.u, from.u.abs() + (h * from.du).abs());
     o.near(to.du, from.du.abs());
@@ -79,7 +86,7 @@ fn put_state(o: &mut Outputs, from: &State, to: &State, h: f64) {
 fn stepped(i: &Inputs, o: &mut Outputs, method: Method) -> f64 {
     let (c, s, h) = (constants(i), state(i, STATE), i.x(BEHIND));
     let (end, error) = step(method, &c, &s, h, true);
-    put_state(o, &s, &end, h);
+    put_state(o, &s, &as_shaders_have_it(&c, &s, &end), h);
     error
 }
 
@@ -158,12 +165,12 @@ pub fn group() -> Group {
         .with(&rain),
         twin(
             integrator,
-            "step_ray rk4_step derivative with_drag_boundary",
+            "step_ray rk4_step derivative",
             STEP_RAY,
             |i| with_rain_step(i, [0.02, 0.15]),
             |i, o| {
                 let (c, s, h) = (constants(i), state(i, STATE), i.x(BEHIND));
-                put_state(o, &s, &rk4_step(&c, &s, h), h);
+                put_state(o, &s, &as_shaders_have_it(&c, &s, &rk4_step(&c, &s, h)), h);
             },
             RAIN_STEP,
         )

@@ -15,6 +15,7 @@ use crate::physics::geodesic::Clock;
 use crate::physics::lens::critical::CurveLevel;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
+use crate::physics::rain::doran_turn;
 use crate::physics::trace::Settings;
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
@@ -90,7 +91,7 @@ pub struct FrameUniform {
     limb_darkened: u32,
     least_profile_u: f32,
     least_profile: f32,
-    unused_after_profile: u32,
+    kerr_turn: f32,
     shown_edges: [f32; 2],
     least_light: f32,
     half_tolerance: f32,
@@ -143,9 +144,9 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         disk_log_reference, disk_opacity, disk_brightness, size, step, tolerance, turbulence_strength,
         turbulence_delay, turbulence_fades_inside, critical, critical_by_margin, disk_u, opaque_u, capture_u,
         max_steps, max_crossings, rain, effects, view, pattern_seed, first_band, milky_way_size, map_size, projection,
-        medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, shown_edges,
-        least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x, occluder_origin,
-        hole_mass, occluder_lensed, placed_r, delay_offset, placed_theta, static_lapse, placed_phi,
+        medium_layer, plane_u, soft_outer, soft_inner, limb_darkened, least_profile_u, least_profile, kerr_turn,
+        shown_edges, least_light, half_tolerance, plunge_isco, plunge_energy, plunge_spin_term, plunge_x,
+        occluder_origin, hole_mass, occluder_lensed, placed_r, delay_offset, placed_theta, static_lapse, placed_phi,
         static_angular_velocity, eye, rain_triad, offset_poles, offset_terms, bands, depth_u, matter_count,
         matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, curve_samples, light_origin,
@@ -299,7 +300,7 @@ impl FrameUniform {
             limb_darkened: u32::from(disk.emission_law == EmissionLaw::LimbDarkened),
             least_profile_u: least_profile_u as f32,
             least_profile: least_profile as f32,
-            unused_after_profile: 0,
+            kerr_turn: if frame.rain { -doran_turn(a, u) as f32 } else { 0.0 },
             shown_edges: f32s(edges.least),
             least_light: least_light as f32,
             half_tolerance: tolerance as f32,
