@@ -33,7 +33,8 @@ const Choice FLOWS[] = {
     {NULL, 0}};
 
 const Choice TONE_MAPS[] = {
-    {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX}, {NULL, 0}};
+    {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX},
+    {"filmic", BHR_TONE_MAP_FILMIC}, {NULL, 0}};
 
 const Choice COLOUR_MAPS[] = {
     {"none", BHR_COLOUR_MAP_NONE}, {"afmhot", BHR_COLOUR_MAP_AFMHOT}, {NULL, 0}};
@@ -214,6 +215,27 @@ const Field FILM_FIELDS[] = {
      "frame heights, 0 .. 1, 0 off", NULL},
     {"--colour-map", OPTION_CHOICE, offsetof(BhrFilm, colour_map), NULL, 0, 0, NULL,
      "the colours of a picture", COLOUR_MAPS},
+    {"--white-balance", OPTION_DOUBLE, offsetof(BhrFilm, white_balance), "K", 1667, 25000, "1667 .. 25000",
+     "kelvin, 1667 .. 25000, of the blackbody whose light is to look white", NULL},
+    {"--tint", OPTION_DOUBLE, offsetof(BhrFilm, tint), NULL, -1, 1, "-1 .. 1",
+     "-1 .. 1, towards magenta above 0 and green below", NULL},
+    {"--contrast", OPTION_DOUBLE, offsetof(BhrFilm, contrast), NULL, 0.25, 4, "0.25 .. 4",
+     "the exponent of light about middle grey, 0.18, which stays: 0.25 .. 4", NULL},
+    {"--saturation", OPTION_DOUBLE, offsetof(BhrFilm, saturation), NULL, 0, 4, "0 .. 4",
+     "the distance of colours from grey of their luminance, 0 .. 4; 0 is grey", NULL},
+    {"--toe-strength", OPTION_DOUBLE, offsetof(BhrFilm, toe_strength), NULL, 0, 1, "0 .. 1",
+     "FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1", NULL},
+    {"--toe-length", OPTION_DOUBLE, offsetof(BhrFilm, toe_length), NULL, 0, 1, "0 .. 1",
+     "FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2", NULL},
+    {"--shoulder-strength", OPTION_DOUBLE, offsetof(BhrFilm, shoulder_strength), "EV", 0, 16, "0 .. 16",
+     "FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white", NULL},
+    {"--shoulder-length", OPTION_DOUBLE, offsetof(BhrFilm, shoulder_length), NULL, 0, 1, "0 .. 1",
+     "FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1", NULL},
+    {"--shoulder-angle", OPTION_DOUBLE, offsetof(BhrFilm, shoulder_angle), NULL, 0, 1, "0 .. 1",
+     "FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat", NULL},
+    {"--vignette", OPTION_DOUBLE, offsetof(BhrFilm, vignette), NULL, 0, 1, "0 .. 1",
+     "0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: "
+     "to a quarter there", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

@@ -204,7 +204,7 @@ static void cycle_preset(Viewer *v, double unused) {
 
 static void cycle_tone_map(Viewer *v, double unused) {
     (void)unused;
-    v->scene.film.tone_map = (v->scene.film.tone_map + 1) % (BHR_TONE_MAP_AGX + 1);
+    v->scene.film.tone_map = (v->scene.film.tone_map + 1) % (BHR_TONE_MAP_FILMIC + 1);
     SAY(v, "tone map: %s", choice_name(TONE_MAPS, v->scene.film.tone_map));
 }
 

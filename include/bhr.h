@@ -962,6 +962,9 @@ typedef int32_t BhrToneMap;
 /** AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES. */
 #define BHR_TONE_MAP_AGX 2
 
+/** A filmic curve with settings, John Hable's of three powers: `toe_strength` to `shoulder_angle`. @since 0.2.0 */
+#define BHR_TONE_MAP_FILMIC 3
+
 /** The colours of a picture. @since 0.2.0 */
 typedef int32_t BhrColourMap;
 
@@ -973,8 +976,8 @@ typedef int32_t BhrColourMap;
 #define BHR_COLOUR_MAP_AFMHOT 1
 
 /** How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
- * radiance, and other views show values. In this order: exposure, bloom, beam, tone map, the sRGB curve or the
- * colour map, dithering. */
+ * radiance, and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast,
+ * saturation, tone map, the sRGB curve or the colour map, dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -990,6 +993,29 @@ typedef struct BhrFilm {
     double beam_fwhm;
     BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0 */
     uint32_t reserved;       /**< 0. @since 0.2.0 */
+    /** Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
+     * @since 0.2.0 */
+    double white_balance;
+    /** -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint
+     * above the blackbodies' in the CIE 1960 diagram (Duv). @since 0.2.0 */
+    double tint;
+    /** The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1. @since 0.2.0 */
+    double contrast;
+    /** The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1. @since 0.2.0 */
+    double saturation;
+    /** FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5. @since 0.2.0 */
+    double toe_strength;
+    double toe_length; /**< FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5. @since 0.2.0 */
+    /** FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2. @since 0.2.0 */
+    double shoulder_strength;
+    /** FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
+     * @since 0.2.0 */
+    double shoulder_length;
+    /** FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1. @since 0.2.0 */
+    double shoulder_angle;
+    /** 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
+     * a quarter there. Default 0. @since 0.2.0 */
+    double vignette;
 } BhrFilm;
 
 /** Fills in the defaults. */

@@ -5,7 +5,7 @@
 use bhr::film::{FilmParams, develop};
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{BlackbodyTable, MIN_TEMPERATURE};
-use bhr::scene::{Film, ToneMap, View};
+use bhr::scene::{Film, Grade, ToneMap, View};
 use bhr::sky::StarField;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
@@ -142,6 +142,7 @@ impl Gpu {
             ("PIXELS", f64::from(pixels)),
             ("TONE_MAP", f64::from(film.tone_map)),
             ("COLOUR_MAP", f64::from(film.colour_map)),
+            ("GRADE", f64::from(film.grade.graded)),
             ("FALSE_COLOUR", f64::from(u32::from(film.false_colour != 0))),
         ];
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -259,7 +260,7 @@ fn gpu_film_agrees() {
     }
     let odd = [f32::NAN, -1.0, 0.0, f32::INFINITY, 1.0, 65504.0, 70000.0, 6.1e-5, 1e-7, 3e-8];
     items.extend(odd.map(|v| [[v, 0.0, 1.0, v], [0.0; 4], [0.0; 4], [0.0; 4]]));
-    let tone_maps = [ToneMap::None, ToneMap::Aces, ToneMap::Agx];
+    let tone_maps = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic];
     let formats = [PixelFormat::Rgba8Srgb, PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
     let mut cases = Vec::new();
     for tone_map in tone_maps {
@@ -267,6 +268,9 @@ fn gpu_film_agrees() {
             let film = Film { tone_map, exposure_ev: 0.5, ..Film::plain() };
             cases.push(FilmParams::new(&film, View::Light, format, format != PixelFormat::Rgba16F));
         }
+        let grade = Grade { white_balance: 4200.0, tint: -0.2, contrast: 1.3, saturation: 1.4, vignette: 0.7 };
+        let film = Film { tone_map, grade, ..Film::plain() };
+        cases.push(FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false).over_frame(640, 480));
     }
     for view in [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric] {
         cases.push(FilmParams::new(&Film::plain(), view, PixelFormat::Rgba8Srgb, false));

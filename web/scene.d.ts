@@ -468,7 +468,8 @@ export interface Sky {
 
 /**
  * How light becomes pixels, in 8-bit formats and windows of "light" only: float formats hold linear radiance, and other
- * views show values. In this order: exposure, bloom, beam, tone map, the sRGB curve or the colour map, dithering.
+ * views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation, tone map, the
+ * sRGB curve or the colour map, dithering.
  */
 export interface Film {
     /**
@@ -504,6 +505,68 @@ export interface Film {
      * @default "none"
      */
     colour_map: ColourMap;
+    /**
+     * Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
+     * @range 1667 .. 25000 K
+     * @default 0
+     */
+    white_balance: number;
+    /**
+     * -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint above
+     * the blackbodies' in the CIE 1960 diagram (Duv).
+     * @range -1 .. 1
+     * @default 0
+     */
+    tint: number;
+    /**
+     * The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1.
+     * @range 0.25 .. 4
+     * @default 1
+     */
+    contrast: number;
+    /**
+     * The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1.
+     * @range 0 .. 4
+     * @default 1
+     */
+    saturation: number;
+    /**
+     * FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5.
+     * @range 0 .. 1
+     * @default 0.5
+     */
+    toe_strength: number;
+    /**
+     * FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5.
+     * @range 0 .. 1
+     * @default 0.5
+     */
+    toe_length: number;
+    /**
+     * FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2.
+     * @range 0 .. 16 EV
+     * @default 2
+     */
+    shoulder_strength: number;
+    /**
+     * FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
+     * @range 0 .. 1
+     * @default 0.5
+     */
+    shoulder_length: number;
+    /**
+     * FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1.
+     * @range 0 .. 1
+     * @default 1
+     */
+    shoulder_angle: number;
+    /**
+     * 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to a
+     * quarter there. Default 0.
+     * @range 0 .. 1
+     * @default 0
+     */
+    vignette: number;
 }
 
 /** How exactly to trace. */

@@ -222,7 +222,9 @@ export type ToneMap =
     /**
      * AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES.
      */
-    | "agx";
+    | "agx"
+    /** A filmic curve with settings, John Hable's of three powers: `toe_strength` to `shoulder_angle`. */
+    | "filmic";
 
 /** How bhr_camera_advance carries a camera's axes along. */
 export type Transport =

@@ -185,6 +185,8 @@ enum class ToneMap : std::int32_t {
     aces = BHR_TONE_MAP_ACES,
     /// AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES.
     agx = BHR_TONE_MAP_AGX,
+    /// A filmic curve with settings, John Hable's of three powers: `toe_strength` to `shoulder_angle`.
+    filmic = BHR_TONE_MAP_FILMIC,
 };
 
 /// BhrColourMap: The colours of a picture.

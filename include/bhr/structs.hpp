@@ -224,6 +224,27 @@ struct Film {
     ColourMap colour_map;
     /// Reserved: 0.
     std::uint32_t reserved;
+    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white.
+    double white_balance;
+    /// -1 .. 1, towards magenta above 0 and green below.
+    double tint;
+    /// The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4.
+    double contrast;
+    /// The distance of colours from grey of their luminance, 0 .. 4; 0 is grey.
+    double saturation;
+    /// FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1.
+    double toe_strength;
+    /// FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2.
+    double toe_length;
+    /// FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white.
+    double shoulder_strength;
+    /// FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1.
+    double shoulder_length;
+    /// FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat.
+    double shoulder_angle;
+    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
+    /// a quarter there.
+    double vignette;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

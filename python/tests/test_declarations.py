@@ -187,7 +187,10 @@ POSITIONS = {
         "inner_radius outer_radius temperature opacity brightness turbulence seed flags reference emission_law "
         "edge_softness"
     ),
-    bhr.Film: "tone_map exposure_ev bloom beam_fwhm colour_map",
+    bhr.Film: (
+        "tone_map exposure_ev bloom beam_fwhm colour_map white_balance tint contrast saturation toe_strength "
+        "toe_length shoulder_strength shoulder_length shoulder_angle vignette"
+    ),
     bhr.HotSpot: (
         "radius size azimuth flags absorption temperature spectral_index tint brightness position velocity time"
     ),

@@ -7,6 +7,8 @@
 #import film/colour_map
 #import film/false_colour
 #import film/encode
+#import film/filmic
+#import film/grade
 #import film/params
 #import shared/not_inlined
 
@@ -16,6 +18,8 @@ override TONE_MAP: u32 = 1u;
 override PIXELS: u32 = 0u;
 // The number of the ColourMap that a kernel is made for, or FROM_UNIFORM.
 override COLOUR_MAP: u32 = 0u;
+// Whether a kernel is made for light that is graded (1) or not (0), or FROM_UNIFORM.
+override GRADE: u32 = 0u;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
 
@@ -50,6 +54,20 @@ fn is_agx() -> bool {
         return not_inlined(film.tone_map) == TONE_MAP_AGX;
     }
     return TONE_MAP == TONE_MAP_AGX;
+}
+
+fn is_filmic() -> bool {
+    if TONE_MAP == FROM_UNIFORM {
+        return not_inlined(film.tone_map) == TONE_MAP_FILMIC;
+    }
+    return TONE_MAP == TONE_MAP_FILMIC;
+}
+
+fn is_graded() -> bool {
+    if GRADE == FROM_UNIFORM {
+        return not_inlined(film.graded) != 0u;
+    }
+    return GRADE != 0u;
 }
 
 fn has_colour_map() -> bool {
@@ -93,7 +111,7 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         // Most of the sky is black, and black stays black, whatever the dither.
         var colour = vec3<u32>(0u);
         if is_agx() || any(scene != vec3<f32>(0.0)) {
-            colour = vec3<u32>(shown_colour(scene) * 255.0 + dither(x, y));
+            colour = vec3<u32>(shown_colour(with_grade(scene, x, y)) * 255.0 + dither(x, y));
         }
         codes = vec4<u32>(colour, u32(alpha_of(radiance.w) * 255.0 + 0.5));
     }
@@ -129,6 +147,15 @@ fn dither(x: u32, y: u32) -> f32 {
     return f32(noise >> 16u) / 65536.0;
 }
 
+// Exposed light at a pixel of the whole frame, graded if the film has a grade.
+fn with_grade(scene: vec3<f32>, x: u32, y: u32) -> vec3<f32> {
+    var light = scene;
+    if is_graded() {
+        light = graded(scene, x, y);
+    }
+    return light;
+}
+
 // The sRGB-encoded colour of exposed light.
 fn shown_colour(scene: vec3<f32>) -> vec3<f32> {
     var colour = vec3<f32>(0.0);
@@ -146,6 +173,8 @@ fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
         mapped = aces(rgb);
     } else if is_agx() {
         mapped = agx(rgb);
+    } else if is_filmic() {
+        mapped = filmic(rgb);
     }
     return mapped;
 }

@@ -187,7 +187,7 @@ unsafe impl Described for BhrFilm {
         Field {
             name: "tone_map",
             offset: offset_of!(BhrFilm, tone_map),
-            kind: Kind::Word(&[("none", 0), ("aces", 1), ("agx", 2)]),
+            kind: Kind::Word(&[("none", 0), ("aces", 1), ("agx", 2), ("filmic", 3)]),
         },
         Field { name: "exposure_ev", offset: offset_of!(BhrFilm, exposure_ev), kind: Kind::Numbers(1) },
         Field { name: "bloom", offset: offset_of!(BhrFilm, bloom), kind: Kind::Numbers(1) },
@@ -197,6 +197,16 @@ unsafe impl Described for BhrFilm {
             offset: offset_of!(BhrFilm, colour_map),
             kind: Kind::Word(&[("none", 0), ("afmhot", 1)]),
         },
+        Field { name: "white_balance", offset: offset_of!(BhrFilm, white_balance), kind: Kind::Numbers(1) },
+        Field { name: "tint", offset: offset_of!(BhrFilm, tint), kind: Kind::Numbers(1) },
+        Field { name: "contrast", offset: offset_of!(BhrFilm, contrast), kind: Kind::Numbers(1) },
+        Field { name: "saturation", offset: offset_of!(BhrFilm, saturation), kind: Kind::Numbers(1) },
+        Field { name: "toe_strength", offset: offset_of!(BhrFilm, toe_strength), kind: Kind::Numbers(1) },
+        Field { name: "toe_length", offset: offset_of!(BhrFilm, toe_length), kind: Kind::Numbers(1) },
+        Field { name: "shoulder_strength", offset: offset_of!(BhrFilm, shoulder_strength), kind: Kind::Numbers(1) },
+        Field { name: "shoulder_length", offset: offset_of!(BhrFilm, shoulder_length), kind: Kind::Numbers(1) },
+        Field { name: "shoulder_angle", offset: offset_of!(BhrFilm, shoulder_angle), kind: Kind::Numbers(1) },
+        Field { name: "vignette", offset: offset_of!(BhrFilm, vignette), kind: Kind::Numbers(1) },
     ];
 }
 

@@ -8,7 +8,8 @@ use super::pointer::{check_reserved, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
-use crate::scene::{ColourMap, Film, ToneMap};
+use crate::scene::{ColourMap, Film, Filmic, Grade, ToneMap};
+use std::mem::offset_of;
 
 /// The curve from light to pixels.
 pub type BhrToneMap = i32;
@@ -18,6 +19,8 @@ pub const BHR_TONE_MAP_NONE: BhrToneMap = 0;
 pub const BHR_TONE_MAP_ACES: BhrToneMap = 1;
 /// AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES.
 pub const BHR_TONE_MAP_AGX: BhrToneMap = 2;
+/// A filmic curve with settings, John Hable's of three powers: `toe_strength` to `shoulder_angle`. @since 0.2.0
+pub const BHR_TONE_MAP_FILMIC: BhrToneMap = 3;
 
 /// The colours of a picture. @since 0.2.0
 pub type BhrColourMap = i32;
@@ -29,8 +32,8 @@ pub const BHR_COLOUR_MAP_NONE: BhrColourMap = 0;
 pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
-/// radiance, and other views show values. In this order: exposure, bloom, beam, tone map, the sRGB curve or the
-/// colour map, dithering.
+/// radiance, and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast,
+/// saturation, tone map, the sRGB curve or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -53,18 +56,42 @@ pub struct BhrFilm {
     pub colour_map: BhrColourMap,
     /// 0. @since 0.2.0
     pub reserved: u32,
+    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
+    /// @since 0.2.0
+    pub white_balance: f64,
+    /// -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint
+    /// above the blackbodies' in the CIE 1960 diagram (Duv). @since 0.2.0
+    pub tint: f64,
+    /// The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1. @since 0.2.0
+    pub contrast: f64,
+    /// The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1. @since 0.2.0
+    pub saturation: f64,
+    /// FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5. @since 0.2.0
+    pub toe_strength: f64,
+    /// FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5. @since 0.2.0
+    pub toe_length: f64,
+    /// FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2. @since 0.2.0
+    pub shoulder_strength: f64,
+    /// FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
+    /// @since 0.2.0
+    pub shoulder_length: f64,
+    /// FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1. @since 0.2.0
+    pub shoulder_angle: f64,
+    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
+    /// a quarter there. Default 0. @since 0.2.0
+    pub vignette: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 40];
+    const SIZES: &'static [usize] = &[24, 120];
     fn defaults() -> Self {
         Film::default().into()
     }
     fn defaults_of(size: usize) -> Self {
         // The plain film is that of 0.1.0, which had no glare unless a host asked for it.
-        if size < size_of::<Self>() { Film::plain().into() } else { Self::defaults() }
+        if size < offset_of!(Self, white_balance) { Film::plain().into() } else { Self::defaults() }
     }
 }
 
@@ -78,6 +105,16 @@ impl From<Film> for BhrFilm {
             beam_fwhm: film.beam_fwhm,
             colour_map: film.colour_map as BhrColourMap,
             reserved: 0,
+            white_balance: film.grade.white_balance,
+            tint: film.grade.tint,
+            contrast: film.grade.contrast,
+            saturation: film.grade.saturation,
+            toe_strength: film.filmic.toe_strength,
+            toe_length: film.filmic.toe_length,
+            shoulder_strength: film.filmic.shoulder_strength,
+            shoulder_length: film.filmic.shoulder_length,
+            shoulder_angle: film.filmic.shoulder_angle,
+            vignette: film.grade.vignette,
         }
     }
 }
@@ -90,7 +127,10 @@ impl TryFrom<BhrFilm> for Film {
             BHR_TONE_MAP_NONE => ToneMap::None,
             BHR_TONE_MAP_ACES => ToneMap::Aces,
             BHR_TONE_MAP_AGX => ToneMap::Agx,
-            value => return unknown(value, "film tone_map", "BHR_TONE_MAP_NONE (0), _ACES (1), _AGX (2)"),
+            BHR_TONE_MAP_FILMIC => ToneMap::Filmic,
+            value => {
+                return unknown(value, "film tone_map", "BHR_TONE_MAP_NONE (0), _ACES (1), _AGX (2), _FILMIC (3)");
+            }
         };
         let colour_map = match given.colour_map {
             BHR_COLOUR_MAP_NONE => ColourMap::None,
@@ -99,7 +139,22 @@ impl TryFrom<BhrFilm> for Film {
         };
         check_reserved(given.reserved, "film")?;
         let (exposure_ev, bloom, beam_fwhm) = (given.exposure_ev, given.bloom, given.beam_fwhm);
-        let film = Self { tone_map, exposure_ev, bloom, beam_fwhm, colour_map, glare_is_optional: false };
+        let grade = Grade {
+            white_balance: given.white_balance,
+            tint: given.tint,
+            contrast: given.contrast,
+            saturation: given.saturation,
+            vignette: given.vignette,
+        };
+        let filmic = Filmic {
+            toe_strength: given.toe_strength,
+            toe_length: given.toe_length,
+            shoulder_strength: given.shoulder_strength,
+            shoulder_length: given.shoulder_length,
+            shoulder_angle: given.shoulder_angle,
+        };
+        let film =
+            Self { tone_map, exposure_ev, bloom, beam_fwhm, colour_map, grade, filmic, glare_is_optional: false };
         film.check()?;
         Ok(film)
     }

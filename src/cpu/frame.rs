@@ -64,7 +64,8 @@ impl<'a> Frame<'a> {
                 .refines(request.transparent)
                 .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens, &structure)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
-            film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
+            film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent)
+                .over_frame(request.region.full_width, request.region.full_height),
             request,
             samples,
         })

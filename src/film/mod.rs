@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve or a
-//! colour map, and dithering; float formats get the radiance as it is. Views other than light get false colour, or
-//! their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits.
-//! Knows nothing of how light was made.
+//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, a grade, tone map, the sRGB
+//! curve or a colour map, and dithering; float formats get the radiance as it is. Views other than light get false
+//! colour, or their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step
+//! of 8 bits. Knows nothing of how light was made.
 
 pub mod bloom;
 pub(crate) mod colour_map;
 pub(crate) mod false_colour;
 pub(crate) mod tone_map;
+mod white_balance;
+pub(crate) mod grade;
+pub(crate) mod filmic;
 
 use crate::image::PixelFormat;
 use crate::scene::{ColourMap, Film, ToneMap, View};
 use arrayvec::ArrayVec;
+use filmic::FilmicParams;
+use grade::GradeParams;
 use tone_map::MAX_SCENE_LIGHT;
 
-/// The properties of a frame that film needs: the uniform `film` of the shader, 32 bytes.
+/// The properties of a frame that film needs: the uniform `film` of the shader, 160 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct FilmParams {
@@ -34,6 +39,8 @@ pub struct FilmParams {
     pub transparent: u32,
     /// A `ColourMap`.
     pub colour_map: u32,
+    pub grade: GradeParams,
+    pub filmic: FilmicParams,
 }
 
 impl FilmParams {
@@ -49,7 +56,14 @@ impl FilmParams {
             view_scale: scale,
             transparent: u32::from(transparent),
             colour_map: film.colour_map as u32,
+            grade: GradeParams::new(&film.grade),
+            filmic: FilmicParams::new(&film.filmic),
         }
+    }
+
+    /// In a whole frame of this size in pixels, which a vignette goes by.
+    pub fn over_frame(self, width: u32, height: u32) -> Self {
+        Self { grade: self.grade.over_frame(width, height), ..self }
     }
 
     /// The parameters for the sum of a frame with bloom, whose light was exposed before it spread.
@@ -74,6 +88,7 @@ impl FilmParams {
         match self.tone_map {
             1 => ToneMap::Aces,
             2 => ToneMap::Agx,
+            3 => ToneMap::Filmic,
             _ => ToneMap::None,
         }
     }
@@ -125,10 +140,13 @@ pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, o
         (Rgba8Srgb | Bgra8Srgb, false, ToneMap::None) => write_light(params, radiance, x, y, out, tone_map::clip),
         (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Aces) => write_light(params, radiance, x, y, out, tone_map::aces),
         (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Agx) => write_light(params, radiance, x, y, out, tone_map::agx),
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Filmic) => {
+            write_light(params, radiance, x, y, out, |scene| filmic::filmic(&params.filmic, scene));
+        }
     }
 }
 
-/// Writes light in 8 bits: its own colours, or those of a map for its luminance.
+/// Writes light in 8 bits, as it is or graded.
 fn write_light(
     params: &FilmParams,
     radiance: &[[f64; 4]],
@@ -137,12 +155,29 @@ fn write_light(
     out: &mut [u8],
     tone_map: impl Fn([f32; 3]) -> [f32; 3],
 ) {
+    if params.grade.graded == 0 {
+        write_graded(params, radiance, x, y, out, tone_map, |scene, _| scene);
+    } else {
+        write_graded(params, radiance, x, y, out, tone_map, |scene, x| grade::graded(&params.grade, scene, x, y));
+    }
+}
+
+/// Writes light in 8 bits: its own colours, or those of a map for its luminance. `grade`: of exposed light at an x.
+fn write_graded(
+    params: &FilmParams,
+    radiance: &[[f64; 4]],
+    x: u32,
+    y: u32,
+    out: &mut [u8],
+    tone_map: impl Fn([f32; 3]) -> [f32; 3],
+    grade: impl Fn([f32; 3], u32) -> [f32; 3],
+) {
     if params.colour_map == ColourMap::Afmhot as u32 {
         let colour = |scene| colour_map::afmhot(tone_map([colour_map::luminance(scene); 3])[0]);
-        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, colour)]);
+        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, |scene| colour(grade(scene, x)))]);
     } else {
         let colour = |scene| tone_map(scene).map(srgb_encode);
-        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, colour)]);
+        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, |scene| colour(grade(scene, x)))]);
     }
 }
 
@@ -272,7 +307,7 @@ mod tests {
 
     #[test]
     fn black_and_white_take_no_dither_in_any_tone_map() {
-        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic] {
             let params = params(kind, PixelFormat::Rgba8Srgb);
             for i in 0..4096 {
                 let (x, y) = (i % 64, i / 64);
@@ -359,7 +394,7 @@ mod tests {
 
     #[test]
     fn nan_and_negative_light_is_black() {
-        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic] {
             let pixel = develop(&params(kind, PixelFormat::Rgba8Srgb), [f32::NAN, -1.0, 0.0, f32::NAN], 9, 9);
             assert_eq!(pixel.as_slice(), [0, 0, 0, 255]);
         }
@@ -371,7 +406,7 @@ mod tests {
 
     #[test]
     fn a_colour_map_shows_the_luminance_alone() {
-        for tone_map in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+        for tone_map in [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic] {
             let film = Film { tone_map, colour_map: ColourMap::Afmhot, ..Film::plain() };
             let params = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
             let at = |rgb: [f32; 3]| develop(&params, [rgb[0], rgb[1], rgb[2], 1.0], 7, 9);

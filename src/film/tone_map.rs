@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
+//! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1]. The one
+//! that has settings is in `super::filmic`.
 //! In f32, as `shaders/film/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 
 /// Brighter light is taken as this: far above every curve's white, and its square is finite.
 pub const MAX_SCENE_LIGHT: f32 = 65504.0;
 
-/// No tone map: what is brighter than white becomes white. As the other two, of `rgb` with every component in
+/// No tone map: what is brighter than white becomes white. As the others, of `rgb` with every component in
 /// [0, MAX_SCENE_LIGHT], to [0, 1]; 0 stays 0 (AgX: below 1e-9).
 #[inline(always)]
 pub fn clip(rgb: [f32; 3]) -> [f32; 3] {
@@ -78,18 +79,20 @@ fn agx_sigmoid(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::filmic::{FilmicParams, filmic};
     use crate::film::srgb_encode;
-    use crate::scene::ToneMap;
+    use crate::scene::{Filmic, ToneMap};
 
     fn tone_map(kind: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
         match kind {
             ToneMap::None => clip(rgb),
             ToneMap::Aces => aces(rgb),
             ToneMap::Agx => agx(rgb),
+            ToneMap::Filmic => filmic(&FilmicParams::new(&Filmic::default()), rgb),
         }
     }
 
-    const ALL: [ToneMap; 3] = [ToneMap::None, ToneMap::Aces, ToneMap::Agx];
+    const ALL: [ToneMap; 4] = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic];
 
     #[test]
     fn curves_are_monotonic_from_black_to_white_and_keep_grey() {

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How linear radiance becomes 8-bit pixels, as the host states it. The curves are in `crate::film`.
 
-use crate::error::{Result, out_of_range};
+use crate::error::{Error, Result, out_of_range};
+
+/// The limits of `Grade::white_balance`, K: those of the formula that others have for the Planckian locus (Kim et al.
+/// 2002).
+const COOLEST_WHITE: f64 = 1667.0;
+const HOTTEST_WHITE: f64 = 25000.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -9,6 +14,7 @@ pub enum ToneMap {
     None = 0,
     Aces = 1,
     Agx = 2,
+    Filmic = 3,
 }
 
 /// The colours of a picture; the maps are in `crate::film::colour_map`.
@@ -19,6 +25,55 @@ pub enum ColourMap {
     None = 0,
     /// The map afmhot, for its luminance.
     Afmhot = 1,
+}
+
+/// Changes of exposed light before the tone map: see `crate::film::grade`. By default it changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grade {
+    /// Temperature of the blackbody whose light is to look white, K, 1667 .. 25000; 0, the default, leaves white alone.
+    pub white_balance: f64,
+    /// Towards magenta, -1 .. 1. Default 0.
+    pub tint: f64,
+    /// The exponent of light about middle grey, 0.25 .. 4. Default 1.
+    pub contrast: f64,
+    /// 0 .. 4. Default 1.
+    pub saturation: f64,
+    /// The share of a lens' natural fall-off, 0 .. 1. Default 0.
+    pub vignette: f64,
+}
+
+impl Default for Grade {
+    fn default() -> Self {
+        Self { white_balance: 0.0, tint: 0.0, contrast: 1.0, saturation: 1.0, vignette: 0.0 }
+    }
+}
+
+impl Grade {
+    /// Whether it changes anything.
+    pub fn is_on(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
+/// The curve of `ToneMap::Filmic`: see `crate::film::filmic`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filmic {
+    /// 0 .. 1. Default 0.5.
+    pub toe_strength: f64,
+    /// 0 .. 1. Default 0.5.
+    pub toe_length: f64,
+    /// Stops, 0 .. 16. Default 2.
+    pub shoulder_strength: f64,
+    /// 0 .. 1. Default 0.5.
+    pub shoulder_length: f64,
+    /// 0 .. 1. Default 1.
+    pub shoulder_angle: f64,
+}
+
+impl Default for Filmic {
+    fn default() -> Self {
+        Self { toe_strength: 0.5, toe_length: 0.5, shoulder_strength: 2.0, shoulder_length: 0.5, shoulder_angle: 1.0 }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +88,8 @@ pub struct Film {
     pub beam_fwhm: f64,
     /// Default `None`.
     pub colour_map: ColourMap,
+    pub grade: Grade,
+    pub filmic: Filmic,
     /// Whether frames of a region, which cannot have glare, go without it; else they fail. True (default) until a host
     /// states a film of its own: those that never asked for glare are to get their tiles.
     pub glare_is_optional: bool,
@@ -46,6 +103,8 @@ impl Default for Film {
             bloom: 0.25,
             beam_fwhm: 0.0,
             colour_map: ColourMap::None,
+            grade: Grade::default(),
+            filmic: Filmic::default(),
             glare_is_optional: true,
         }
     }
@@ -54,13 +113,29 @@ impl Default for Film {
 impl Film {
     /// Errors: a number out of range.
     pub fn check(&self) -> Result<()> {
-        if !(-20.0..=20.0).contains(&self.exposure_ev) {
-            return Err(out_of_range("film exposure_ev", self.exposure_ev, -20.0, 20.0));
-        }
-        for (name, value) in [("bloom", self.bloom), ("beam_fwhm", self.beam_fwhm)] {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(out_of_range(&format!("film {name}"), value, 0.0, 1.0));
+        let (grade, filmic) = (&self.grade, &self.filmic);
+        for (name, value, low, high) in [
+            ("exposure_ev", self.exposure_ev, -20.0, 20.0),
+            ("bloom", self.bloom, 0.0, 1.0),
+            ("beam_fwhm", self.beam_fwhm, 0.0, 1.0),
+            ("tint", grade.tint, -1.0, 1.0),
+            ("contrast", grade.contrast, 0.25, 4.0),
+            ("saturation", grade.saturation, 0.0, 4.0),
+            ("toe_strength", filmic.toe_strength, 0.0, 1.0),
+            ("toe_length", filmic.toe_length, 0.0, 1.0),
+            ("shoulder_strength", filmic.shoulder_strength, 0.0, 16.0),
+            ("shoulder_length", filmic.shoulder_length, 0.0, 1.0),
+            ("shoulder_angle", filmic.shoulder_angle, 0.0, 1.0),
+            ("vignette", grade.vignette, 0.0, 1.0),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(out_of_range(&format!("film {name}"), value, low, high));
             }
+        }
+        let white = grade.white_balance;
+        if white != 0.0 && !(COOLEST_WHITE..=HOTTEST_WHITE).contains(&white) {
+            let range = out_of_range("film white_balance", white, COOLEST_WHITE, HOTTEST_WHITE);
+            return Err(Error::argument(format!("{range}, or be 0")));
         }
         Ok(())
     }

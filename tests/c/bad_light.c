@@ -190,10 +190,68 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, beam_fwhm), INFINITY, "beam_fwhm"},
         {offsetof(BhrFilm, beam_fwhm), -INFINITY, "beam_fwhm"},
         {offsetof(BhrFilm, beam_fwhm), -5e-324, "beam_fwhm"},
+        {offsetof(BhrFilm, white_balance), -1.0, "white_balance"},
+        {offsetof(BhrFilm, white_balance), -5e-324, "white_balance"},
+        {offsetof(BhrFilm, white_balance), 5e-324, "white_balance"},
+        {offsetof(BhrFilm, white_balance), 1666.9, "white_balance"},
+        {offsetof(BhrFilm, white_balance), 25000.1, "white_balance"},
+        {offsetof(BhrFilm, white_balance), NAN, "white_balance"},
+        {offsetof(BhrFilm, white_balance), INFINITY, "white_balance"},
+        {offsetof(BhrFilm, white_balance), -INFINITY, "white_balance"},
+        {offsetof(BhrFilm, white_balance), 1.7e308, "white_balance"},
+        {offsetof(BhrFilm, tint), -1.01, "tint"},
+        {offsetof(BhrFilm, tint), 1.01, "tint"},
+        {offsetof(BhrFilm, tint), NAN, "tint"},
+        {offsetof(BhrFilm, tint), INFINITY, "tint"},
+        {offsetof(BhrFilm, tint), -INFINITY, "tint"},
+        {offsetof(BhrFilm, contrast), 0.2499, "contrast"},
+        {offsetof(BhrFilm, contrast), 4.01, "contrast"},
+        {offsetof(BhrFilm, contrast), 0.0, "contrast"},
+        {offsetof(BhrFilm, contrast), -1.0, "contrast"},
+        {offsetof(BhrFilm, contrast), NAN, "contrast"},
+        {offsetof(BhrFilm, contrast), INFINITY, "contrast"},
+        {offsetof(BhrFilm, contrast), -INFINITY, "contrast"},
+        {offsetof(BhrFilm, saturation), -0.01, "saturation"},
+        {offsetof(BhrFilm, saturation), 4.01, "saturation"},
+        {offsetof(BhrFilm, saturation), -5e-324, "saturation"},
+        {offsetof(BhrFilm, saturation), NAN, "saturation"},
+        {offsetof(BhrFilm, saturation), INFINITY, "saturation"},
+        {offsetof(BhrFilm, saturation), -INFINITY, "saturation"},
+        {offsetof(BhrFilm, toe_strength), -0.01, "toe_strength"},
+        {offsetof(BhrFilm, toe_strength), 1.01, "toe_strength"},
+        {offsetof(BhrFilm, toe_strength), NAN, "toe_strength"},
+        {offsetof(BhrFilm, toe_strength), INFINITY, "toe_strength"},
+        {offsetof(BhrFilm, toe_strength), -INFINITY, "toe_strength"},
+        {offsetof(BhrFilm, toe_length), -0.01, "toe_length"},
+        {offsetof(BhrFilm, toe_length), 1.01, "toe_length"},
+        {offsetof(BhrFilm, toe_length), NAN, "toe_length"},
+        {offsetof(BhrFilm, toe_length), INFINITY, "toe_length"},
+        {offsetof(BhrFilm, toe_length), -INFINITY, "toe_length"},
+        {offsetof(BhrFilm, shoulder_strength), -0.01, "shoulder_strength"},
+        {offsetof(BhrFilm, shoulder_strength), 16.01, "shoulder_strength"},
+        {offsetof(BhrFilm, shoulder_strength), NAN, "shoulder_strength"},
+        {offsetof(BhrFilm, shoulder_strength), INFINITY, "shoulder_strength"},
+        {offsetof(BhrFilm, shoulder_strength), -INFINITY, "shoulder_strength"},
+        {offsetof(BhrFilm, shoulder_length), -0.01, "shoulder_length"},
+        {offsetof(BhrFilm, shoulder_length), 1.01, "shoulder_length"},
+        {offsetof(BhrFilm, shoulder_length), NAN, "shoulder_length"},
+        {offsetof(BhrFilm, shoulder_length), INFINITY, "shoulder_length"},
+        {offsetof(BhrFilm, shoulder_length), -INFINITY, "shoulder_length"},
+        {offsetof(BhrFilm, shoulder_angle), -0.01, "shoulder_angle"},
+        {offsetof(BhrFilm, shoulder_angle), 1.01, "shoulder_angle"},
+        {offsetof(BhrFilm, shoulder_angle), NAN, "shoulder_angle"},
+        {offsetof(BhrFilm, shoulder_angle), INFINITY, "shoulder_angle"},
+        {offsetof(BhrFilm, shoulder_angle), -INFINITY, "shoulder_angle"},
+        {offsetof(BhrFilm, vignette), -0.01, "vignette"},
+        {offsetof(BhrFilm, vignette), 1.01, "vignette"},
+        {offsetof(BhrFilm, vignette), -5e-324, "vignette"},
+        {offsetof(BhrFilm, vignette), NAN, "vignette"},
+        {offsetof(BhrFilm, vignette), INFINITY, "vignette"},
+        {offsetof(BhrFilm, vignette), -INFINITY, "vignette"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));
-    static const int32_t unknown[] = {-1, 3, 99, INT32_MIN, INT32_MAX};
+    static const int32_t unknown[] = {-1, 4, 99, INT32_MIN, INT32_MAX};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
         CHECK_OK(bhr_film_init(&value, sizeof value));
         value.tone_map = unknown[i];
@@ -206,7 +264,7 @@ static void film(Watch *watch, BhrContext *context) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_film(context, &value));
     }
     /* At the limits: from black to white, under every tone map. */
-    for (int32_t tone_map = BHR_TONE_MAP_NONE; tone_map <= BHR_TONE_MAP_AGX; tone_map++) {
+    for (int32_t tone_map = BHR_TONE_MAP_NONE; tone_map <= BHR_TONE_MAP_FILMIC; tone_map++) {
         static const double stops[] = {-20.0, 20.0};
         unsigned            sums[2];
         for (size_t i = 0; i < COUNT_OF(stops); i++) {

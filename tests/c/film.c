@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 #include <stdlib.h>
 /* film.c -- the film: 8-bit images are exposed, bloom, and are mapped; float images are left alone; bloom needs the
- * whole frame, as a beam does; colour maps. Numbers out of range are in bad_scene.c. */
+ * whole frame, as a beam does; colour maps; grades. Numbers out of range are in bad_light.c. */
 #include "check.h"
 
 #include <string.h>
@@ -135,6 +135,152 @@ static void beams_and_colour_maps(BhrContext *context) {
     CHECK(old.bloom == 0.0, "a film of the first release begins with a bloom of %g", old.bloom);
 }
 
+/* A film of no glare, without a curve, to be graded. */
+static BhrFilm plain_film(void) {
+    BhrFilm film;
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    film.tone_map = BHR_TONE_MAP_NONE;
+    film.bloom = 0.0;
+    film.exposure_ev = -1.0;
+    return film;
+}
+
+static void render_film(BhrContext *context, const BhrFilm *film, unsigned char *pixels) {
+    BhrFilm got;
+    CHECK_OK(bhr_film_init(&got, sizeof got));
+    CHECK_OK(bhr_set_film(context, film));
+    CHECK_OK(bhr_get_film(context, &got));
+    CHECK(memcmp(&got, film, sizeof got) == 0, "another film than was set");
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, pixels);
+}
+
+static unsigned sum_of(const unsigned char *pixels, size_t channel) {
+    unsigned sum = 0;
+    for (size_t i = channel; i < WIDTH * HEIGHT * 4; i += 4) {
+        sum += pixels[i];
+    }
+    return sum;
+}
+
+/* Each setting changes pictures of light in 8 bits as it says, and nothing else. */
+static void grades(BhrContext *context) {
+    const size_t bytes = WIDTH * HEIGHT * 4;
+    BhrFilm      film = plain_film();
+    render_film(context, &film, before);
+
+    film.white_balance = 3500.0;
+    render_film(context, &film, after);
+    CHECK(sum_of(after, 2) > sum_of(before, 2) * 6 / 5 && sum_of(after, 0) < sum_of(before, 0),
+          "a balance for warm light leaves blue %u of %u, red %u of %u", sum_of(after, 2), sum_of(before, 2),
+          sum_of(after, 0), sum_of(before, 0));
+    film.white_balance = 0.0, film.tint = 1.0;
+    render_film(context, &film, after);
+    CHECK(sum_of(after, 1) < sum_of(before, 1) && sum_of(after, 2) > sum_of(before, 2), "tint makes no magenta");
+    film.tint = 0.0, film.saturation = 0.0;
+    render_film(context, &film, after);
+    size_t coloured = 0;
+    for (size_t i = 0; i < bytes; i += 4) {
+        coloured += after[i] != after[i + 1] || after[i] != after[i + 2];
+    }
+    CHECK(coloured == 0 && sum_of(after, 0) > 1000, "%u pixels have colours without saturation", (unsigned)coloured);
+    film.saturation = 1.0, film.contrast = 2.0;
+    render_film(context, &film, after);
+    size_t wrong = 0, darker = 0;
+    for (size_t i = 0; i < bytes; i++) {
+        /* Middle grey is 118 of 255, and stays. */
+        const int moved = after[i] - before[i];
+        wrong += i % 4 < 3 && (before[i] < 115 ? moved > 1 : before[i] > 121 ? moved < -1 : 0);
+        darker += moved < -3;
+    }
+    CHECK(wrong == 0 && darker > 50, "contrast: %u wrong, %u darker", (unsigned)wrong, (unsigned)darker);
+
+    film = plain_film();
+    film.vignette = film.saturation = 0.5;
+    film.white_balance = 25000.0, film.tint = -1.0, film.contrast = 0.25;
+    CHECK_OK(bhr_set_film(context, &film));
+    render(context, BHR_FORMAT_RGBA32F, 0, after);
+    set_film(context, BHR_TONE_MAP_NONE, 0.0, 0.0);
+    static unsigned char light[MOST_BYTES];
+    render(context, BHR_FORMAT_RGBA32F, 0, light);
+    CHECK(memcmp(light, after, sizeof light) == 0, "a grade changes linear radiance");
+    CHECK_OK(bhr_set_view(context, BHR_VIEW_REDSHIFT));
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, light);
+    render_film(context, &film, after);
+    CHECK(memcmp(light, after, bytes) == 0, "a grade changes the colours of a view");
+    CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
+
+    /* Hosts of older headers: the film of 0.1.0, and the one that had a beam but no grade. */
+    static const uint32_t sizes[] = {FIRST_FILM, offsetof(BhrFilm, white_balance)};
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        BhrFilm old = plain_film();
+        old.struct_size = sizes[i];
+        memset((unsigned char *)&old + sizes[i], UNTOUCHED, sizeof old - sizes[i]);
+        CHECK_OK(bhr_set_film(context, &film));
+        CHECK_OK(bhr_set_film(context, &old));
+        render(context, BHR_FORMAT_RGBA8_SRGB, 0, after);
+        CHECK(memcmp(before, after, bytes) == 0, "a film of %u bytes has another picture", sizes[i]);
+    }
+}
+
+/* A third brighter in the middle than half the way to a corner, and a part is as the whole. */
+static void vignettes(BhrContext *context) {
+    static unsigned char whole[2 * WIDTH * HEIGHT * 4];
+    const BhrRegion      region = {
+             .struct_size = sizeof region, .full_width = 2 * WIDTH, .full_height = HEIGHT, .x = WIDTH / 2};
+    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, 2 * WIDTH, HEIGHT, whole, sizeof whole);
+    BhrFilm        film = plain_film();
+    film.exposure_ev = 0.0;
+    film.vignette = 1.0;
+    CHECK_OK(bhr_set_film(context, &film));
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK_OK(bhr_set_region(context, &region));
+    render_film(context, &film, after);
+    film.vignette = 0.0;
+    render_film(context, &film, before);
+    CHECK_OK(bhr_set_region(context, NULL));
+    size_t near = 0, corners = 0, darkened = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT * 4; i++) {
+        const size_t y = i / (WIDTH * 4), x = i % (WIDTH * 4);
+        near += abs(whole[y * 2 * WIDTH * 4 + WIDTH / 2 * 4 + x] - after[i]) <= 1;
+        /* An edge's middle is at half of r^2 = 1/4 here, cos^4 = 0.64: some 0.82 of the code. */
+        const int lit = before[i] > 60 && before[i] < 255 && x / 4 < 4 && i % 4 < 3;
+        corners += lit;
+        darkened += lit && after[i] * 10 < before[i] * 9;
+    }
+    CHECK(near * 1000 >= (size_t)WIDTH * HEIGHT * 4 * 999, "only %u bytes are as in the whole", (unsigned)near);
+    CHECK(darkened == corners, "%u of %u bytes are darkened", (unsigned)darkened, (unsigned)corners);
+    film.vignette = 1.0;
+    film.bloom = 0.5;
+    render_film(context, &film, after);
+    film.vignette = 0.0;
+    render_film(context, &film, before);
+    CHECK(sum_of(after, 0) < sum_of(before, 0), "with glare there is no vignette");
+}
+
+/* The curve rises, ends in white, and its settings change it. */
+static void filmic(BhrContext *context) {
+    BhrFilm film = plain_film();
+    film.tone_map = BHR_TONE_MAP_FILMIC;
+    film.exposure_ev = 2.0;
+    render_film(context, &film, before);
+    const unsigned usual = sum_of(before, 0);
+    film.toe_strength = 0.0;
+    render_film(context, &film, after);
+    CHECK(sum_of(after, 0) > usual, "without a toe %u, with one %u", sum_of(after, 0), usual);
+    film.toe_strength = 0.5, film.shoulder_strength = 6.0;
+    render_film(context, &film, after);
+    CHECK(sum_of(after, 0) < usual, "a longer shoulder gives %u, not less than %u", sum_of(after, 0), usual);
+    static const double ends[] = {0.0, 1.0};
+    for (size_t i = 0; i < 32; i++) {
+        film.toe_strength = ends[i % 2], film.toe_length = ends[i / 2 % 2];
+        film.shoulder_length = ends[i / 4 % 2], film.shoulder_angle = ends[i / 8 % 2];
+        film.shoulder_strength = 16.0 * ends[i / 16];
+        film.exposure_ev = 20.0;
+        render_film(context, &film, after);
+        CHECK(sum_of(after, 0) > sum_of(before, 0), "curve %u has no white", (unsigned)i);
+    }
+}
+
 /* Glare adds light; alpha is still what the hole and the disk cover. */
 static void transparent_images(BhrContext *context) {
     set_film(context, BHR_TONE_MAP_ACES, 2.0, 0.0);
@@ -180,6 +326,9 @@ int main(int argc, char **argv) {
     floats_are_left_alone(context);
     eight_bits_bloom(context);
     beams_and_colour_maps(context);
+    grades(context);
+    vignettes(context);
+    filmic(context);
     transparent_images(context);
     regions(context);
     bhr_context_destroy(context);

@@ -249,11 +249,21 @@ static void scene_call(BhrContext *context) {
     case 7:
         bhr_film_init(&film, sizeof film);
         film.struct_size = mostly(sizeof film, byte());
-        film.tone_map = constant(BHR_TONE_MAP_AGX);
+        film.tone_map = constant(BHR_TONE_MAP_FILMIC);
         film.exposure_ev = number();
         film.bloom = number();
         film.beam_fwhm = number();
         film.colour_map = constant(1);
+        film.white_balance = number();
+        film.tint = number();
+        film.contrast = number();
+        film.saturation = number();
+        film.toe_strength = number();
+        film.toe_length = number();
+        film.shoulder_strength = number();
+        film.shoulder_length = number();
+        film.shoulder_angle = number();
+        film.vignette = number();
         check(bhr_set_film(context, &film));
         break;
     case 8: check(bhr_set_time(context, number())); break;

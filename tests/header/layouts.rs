@@ -142,7 +142,9 @@ fn layouts_hold_in_rust() {
         transfer::BhrTransfer { fate, reserved, intensity, optical_depth, light }
         image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved }
         sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }
-        film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved }
+        film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved, white_balance, tint,
+            contrast, saturation, toe_strength, toe_length, shoulder_strength, shoulder_length, shoulder_angle,
+            vignette }
         preset::BhrPresetOptions { struct_size, matter, width, height, frame_ms, measure_anew, may_halve }
         quality::BhrQuality {
             struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale,

@@ -12,8 +12,9 @@ fn no_source_is_long_or_wide() {
     let mut wrong = Vec::new();
     for (name, _, text) in written() {
         let lines = text.lines().count();
-        // The header is one file because hosts read it so.
-        if lines > LONGEST_FILE && name != Path::new("include/bhr.h") {
+        // The header is one file because hosts read it so, and so are the types that are made of it.
+        let one_file = ["include/bhr.h", "web/scene.d.ts"].iter().any(|file| name == Path::new(file));
+        if lines > LONGEST_FILE && !one_file {
             wrong.push(format!("{} has {lines} lines", name.display()));
         }
         // A row of a table in Markdown is one line, whatever it holds.

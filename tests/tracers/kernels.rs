@@ -132,6 +132,7 @@ fn what_a_host_changes_next_is_made_in_the_background() {
     next_frames(&[
         (|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Rgba16F),
         (|_| (), PixelFormat::Rgba8Srgb),
+        (|scene| scene.film.grade.saturation = 0.5, PixelFormat::Rgba8Srgb),
     ]);
     if !runs_all() {
         return;
@@ -209,6 +210,8 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_pixels() {
         assert!(good, "{name}, {:?}: {differ} bytes differ, by {steps} steps", scene.camera.projection);
     };
     compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);
+    compare(|scene| scene.film.tone_map = ToneMap::Filmic, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.film.grade.contrast = 1.5, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);
     for mapped in [
         |scene: &mut Scene| scene.quality.mapped_pixels = Some(false),

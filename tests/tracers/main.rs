@@ -13,6 +13,7 @@ mod frames;
 mod falls;
 mod free_spots;
 mod frusta;
+mod grades;
 mod half;
 mod inside;
 mod jobs;

@@ -189,6 +189,8 @@ class ToneMap(enum.IntEnum):
     ACES = 1
     #: AgX, base look; middle grey becomes 128 of 255, and bright saturated light shifts its hue less than under ACES.
     AGX = 2
+    #: A filmic curve with settings, John Hable's of three powers: `toe_strength` to `shoulder_angle`.
+    FILMIC = 3
 
 
 class ColourMap(enum.IntEnum):
@@ -429,7 +431,7 @@ FlowName = Literal["keplerian", "angular_momentum", "outflow"]
 FlowLike = Union[Flow, FlowName]
 FormatName = Literal["rgba8_srgb", "bgra8_srgb", "rgba16f", "rgba32f", "r32f"]
 FormatLike = Union[Format, FormatName]
-ToneMapName = Literal["none", "aces", "agx"]
+ToneMapName = Literal["none", "aces", "agx", "filmic"]
 ToneMapLike = Union[ToneMap, ToneMapName]
 ColourMapName = Literal["none", "afmhot"]
 ColourMapLike = Union[ColourMap, ColourMapName]

@@ -262,8 +262,8 @@ class Sky(Struct):
 @dataclasses.dataclass(frozen=True)
 class Film(Struct):
     """How light becomes pixels, in 8-bit formats and windows of View.LIGHT only: float formats hold linear radiance,
-    and other views show values. In this order: exposure, bloom, beam, tone map, the sRGB curve or the colour map,
-    dithering."""
+    and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation,
+    tone map, the sRGB curve or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -283,6 +283,28 @@ class Film(Struct):
     beam_fwhm: float = 0.0
     #: One of ColourMap. Default NONE.
     colour_map: Named[ColourMap, ColourMapName] = named(ColourMap.NONE)
+    #: Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
+    white_balance: float = 0.0
+    #: -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint above
+    #: the blackbodies' in the CIE 1960 diagram (Duv).
+    tint: float = 0.0
+    #: The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1.
+    contrast: float = 1.0
+    #: The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1.
+    saturation: float = 1.0
+    #: FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5.
+    toe_strength: float = 0.5
+    #: FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5.
+    toe_length: float = 0.5
+    #: FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2.
+    shoulder_strength: float = 2.0
+    #: FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
+    shoulder_length: float = 0.5
+    #: FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1.
+    shoulder_angle: float = 1.0
+    #: 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to a
+    #: quarter there. Default 0.
+    vignette: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)

@@ -67,6 +67,9 @@ fn random_value(section: Section, field: &Field, random: &mut Random) -> Value {
             let turn = glam::DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), within(0.0, 6.0));
             numbers(&turn.to_array())
         }
+        (_, "white_balance", _) => numbers(&[within(1667.0, 25_000.0)]),
+        (_, "contrast", _) => numbers(&[within(0.25, 4.0)]),
+        (Section::Film, "tint", _) => numbers(&[within(-1.0, 1.0)]),
         (_, "tint", _) => numbers(&[within(0.0, 1.0), within(0.0, 1.0), within(0.0, 1.0)]),
         (Section::HotSpot(_), "radius", _) => numbers(&[within(8.0, 12.0)]),
         (Section::HotSpot(_), "size", _) => numbers(&[within(0.5, 1.5)]),

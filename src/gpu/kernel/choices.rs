@@ -170,8 +170,9 @@ table! {
     OCCLUDED: FLAG, SHADE | REFINE | PIXELS;
     PIXELS: [0, 1, 2, FROM_UNIFORM], PACKED, set [(SCREEN, 0), (RGBA32F, 1), (R32F, 2)];
     FALSE_COLOUR: FLAG, FILM, only EIGHT_BIT;
-    TONE_MAP: [0, 1, 2, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
+    TONE_MAP: [0, 1, 2, 3, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
     COLOUR_MAP: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
+    GRADE: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
     // The bloom's cells, in pixels, of frames up to 16384 x 8192.
     STEP: [2, 4, 6, 8], GATHER | GLARE;
     GRID: FLAG, GATHER;

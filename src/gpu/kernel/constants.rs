@@ -14,7 +14,7 @@ use crate::emit::{
     volumes,
 };
 use crate::film::bloom::BEAM_SHARES;
-use crate::film::{self, colour_map, tone_map};
+use crate::film::{self, colour_map, grade, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
@@ -309,6 +309,8 @@ fn all() -> Vec<(&'static str, String)> {
         PIXELS_R32F: u32 = PixelKind::R32F;
         TONE_MAP_ACES: u32 = ToneMap::Aces;
         TONE_MAP_AGX: u32 = ToneMap::Agx;
+        TONE_MAP_FILMIC: u32 = ToneMap::Filmic;
+        LEAST_BASE: f32 = grade::LEAST_BASE;
         COLOUR_MAP_NONE: u32 = ColourMap::None;
         LUMINANCE: vec3 = colour_map::LUMINANCE;
         BEAM_QUARTERS: i32 = BEAM_SHARES / 4;

@@ -40,6 +40,7 @@ made! {
     Option<Projection>: |projection| projection.map_or(FROM_UNIFORM, |projection| projection as u32);
     Option<PixelKind>: |pixels| pixels.map_or(FROM_UNIFORM, |pixels| pixels as u32);
     Option<ToneMap>: |tone_map| tone_map.map_or(FROM_UNIFORM, |tone_map| tone_map as u32);
+    Option<bool>: |on| on.map_or(FROM_UNIFORM, u32::from);
     Option<ColourMap>: |colour_map| colour_map.map_or(FROM_UNIFORM, |colour_map| colour_map as u32);
 }
 
@@ -176,6 +177,8 @@ variant! {
         TONE_MAP pub(in crate::gpu) tone_map: Option<ToneMap>,
         /// `None`: any, which the kernel asks while it runs.
         COLOUR_MAP pub(in crate::gpu) colour_map: Option<ColourMap>,
+        /// Whether light is graded. `None`: the kernel asks while it runs.
+        GRADE pub(in crate::gpu) grade: Option<bool>,
         ;
         pub(in crate::gpu) target: PixelTarget,
     }
@@ -256,27 +259,29 @@ impl FilmVariant {
             PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
             PixelFormat::R32F => PixelKind::R32F,
         };
-        let (tone_map, colour_map) = (Some(film.tone_map), Some(film.colour_map));
-        Self { pixels: Some(pixels), false_colour: view != View::Light, tone_map, colour_map, target }
+        let (tone_map, colour_map, grade) = (Some(film.tone_map), Some(film.colour_map), Some(film.grade.is_on()));
+        Self { pixels: Some(pixels), false_colour: view != View::Light, tone_map, colour_map, grade, target }
     }
 
-    /// The variant that serves every tone map and colour map, and, but in images, which have one kind of pixels, every
-    /// format.
+    /// The variant that serves every tone map, colour map and grade, and, but in images, which have one kind of pixels,
+    /// every format.
     pub fn of_any(self) -> Self {
-        Self { pixels: self.pixels.filter(|_| self.target.is_image()), tone_map: None, colour_map: None, ..self }
+        let pixels = self.pixels.filter(|_| self.target.is_image());
+        Self { pixels, tone_map: None, colour_map: None, grade: None, ..self }
     }
 
     /// Whether hosts begin with such pixels, which have kernels of their own (`GpuTracer::set_up`): light in 8 bits by
-    /// ACES, the default.
+    /// ACES without a grade, the default.
     pub fn is_usual(self) -> bool {
-        let plain = self.colour_map == Some(ColourMap::None) && !self.false_colour;
+        let plain = self.colour_map == Some(ColourMap::None) && self.grade == Some(false) && !self.false_colour;
         self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces) && plain
     }
 
     /// For light that bloom is to spread.
     pub fn of_light() -> Self {
-        let (tone_map, colour_map) = (Some(ToneMap::None), Some(ColourMap::None));
-        Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, colour_map, target: PixelTarget::Light }
+        let (tone_map, colour_map, grade) = (Some(ToneMap::None), Some(ColourMap::None), Some(false));
+        let (pixels, target) = (Some(PixelKind::Float), PixelTarget::Light);
+        Self { pixels, false_colour: false, tone_map, colour_map, grade, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.

@@ -3,22 +3,28 @@
 
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
-use crate::film::{FilmParams, colour_map, develop, dither, false_colour, limited, srgb_encode, tone_map};
+use crate::film::{
+    FilmParams, colour_map, develop, dither, false_colour, filmic, grade, limited, srgb_encode, tone_map,
+};
 use crate::gpu::kernel::choices::FROM_UNIFORM;
 use crate::image::PixelFormat;
 use crate::image::file::srgb_to_linear;
-use crate::scene::{ColourMap, Film, ToneMap, View};
+use crate::scene::{ColourMap, Film, Filmic, Grade, ToneMap, View};
 
 const HEAD: &str = "
 #import film/film
 #import film/colour_map
 #import film/encode
 #import film/false_colour
+#import film/filmic
+#import film/grade
 #import film/params
 #import window/present
 var<private> film: FilmParams;
 fn enter_film() {
-    film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u));
+    film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u), word(8u), in1(9u),
+        in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in4(28u), in4(32u),
+        in4(36u));
 }
 fn out_bytes(words: vec4<u32>, count: u32) {
     for (var k = 0u; k < count; k += 1u) {
@@ -27,34 +33,44 @@ fn out_bytes(words: vec4<u32>, count: u32) {
 }
 ";
 
-const LIGHT: usize = 8;
+/// Words of `FilmParams`, behind which light comes.
+const LIGHT: usize = 40;
 
 fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
-    let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx][i.random.below(3) as usize];
+    let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic][i.random.below(4) as usize];
     let colour_map = [ColourMap::None, ColourMap::Afmhot][i.random.below(2) as usize];
-    let film = Film { tone_map, colour_map, exposure_ev: i.random.even(-2.0, 2.0), ..Film::plain() };
-    let params = FilmParams::new(&film, view, format, i.random.below(2) == 0);
-    i.push(params.exposure.into());
-    [params.tone_map, params.format, params.false_colour].into_iter().for_each(|word| {
+    let on = i.random.below(2) == 0;
+    let grade = Grade {
+        white_balance: if i.random.below(4) == 0 { 0.0 } else { i.random.log(1667.0, 25_000.0) },
+        tint: i.random.even(-1.0, 1.0),
+        contrast: i.random.log(0.25, 4.0),
+        saturation: i.random.even(0.0, 4.0),
+        vignette: i.random.even(0.0, 1.0),
+    };
+    let filmic = Filmic {
+        toe_strength: i.random.even(0.0, 1.0),
+        toe_length: i.random.even(0.0, 1.0),
+        shoulder_strength: i.random.even(0.0, 16.0),
+        shoulder_length: i.random.even(0.0, 1.0),
+        shoulder_angle: i.random.even(0.0, 1.0),
+    };
+    let film = Film {
+        tone_map,
+        colour_map,
+        exposure_ev: i.random.even(-2.0, 2.0),
+        grade: if on { grade } else { Grade::default() },
+        filmic,
+        ..Film::plain()
+    };
+    let params = FilmParams::new(&film, view, format, i.random.below(2) == 0).over_frame(8192, 6000);
+    bytemuck::cast::<_, [u32; LIGHT]>(params).into_iter().for_each(|word| {
         i.push_word(word);
     });
-    i.push(params.view_low.into());
-    i.push(params.view_scale.into());
-    i.push_word(params.transparent);
-    i.push_word(params.colour_map);
 }
 
 fn params(i: &Inputs) -> FilmParams {
-    FilmParams {
-        exposure: i.f(0),
-        tone_map: i.word(1),
-        format: i.word(2),
-        false_colour: i.word(3),
-        view_low: i.f(4),
-        view_scale: i.f(5),
-        transparent: i.word(6),
-        colour_map: i.word(7),
-    }
+    let words: [u32; LIGHT] = std::array::from_fn(|k| i.word(k));
+    bytemuck::cast(words)
 }
 
 fn push_light(i: &mut Inputs) {
@@ -111,14 +127,14 @@ fn push_value(i: &mut Inputs) {
 
 pub fn group() -> Group {
     let any = f64::from(FROM_UNIFORM);
-    let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any)];
+    let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any), ("GRADE", any)];
     let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
-    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(8u), word(12u), word(13u)), pixel_words());";
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(40u), word(44u), word(45u)), pixel_words());";
     let twins = vec![
         twin(
             film,
-            "develop develop_8bit shown_colour has_colour_map tone_map dither alpha_of is_float is_r32f is_aces is_agx \
-             pixel_words has_several_words",
+            "develop develop_8bit with_grade shown_colour is_graded has_colour_map tone_map dither alpha_of is_float \
+             is_r32f is_aces is_agx is_filmic pixel_words has_several_words",
             DEVELOP,
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
@@ -172,12 +188,12 @@ pub fn group() -> Group {
         twin(
             encode,
             "limited is_nan",
-            "out3(limited(in3(8u), 100.0));",
+            "out3(limited(in3(40u), 100.0));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 push_light(i);
             },
-            |i, o| o.all([8, 9, 10].map(|k| f64::from(limited(i.f(k), 100.0))), 0.0),
+            |i, o| o.all([LIGHT, LIGHT + 1, LIGHT + 2].map(|k| f64::from(limited(i.f(k), 100.0))), 0.0),
             SAME,
         )
         .exactly(),
@@ -195,6 +211,35 @@ pub fn group() -> Group {
         ),
         twin(film, "aces balanced", "out3(aces(in3(0u)));", rgb, |i, o| put3(o, tone_map::aces(f3(i))), ROUNDING),
         twin(film, "agx agx_sigmoid", "out3(agx(in3(0u)));", rgb, |i, o| put3(o, tone_map::agx(f3(i))), TRANSCENDENTAL),
+        twin(
+            "film/filmic",
+            "filmic log_rest",
+            "enter_film(); out3(filmic(in3(40u)));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                rgb(i);
+            },
+            |i, o| put3(o, filmic::filmic(&params(i).filmic, [0, 1, 2].map(|k| i.f(LIGHT + k)))),
+            // Under the greatest shoulder the driver's exp gets hundreds; drivers may round its exponent.
+            1e-4,
+        ),
+        twin(
+            "film/grade",
+            "graded",
+            "enter_film(); out3(graded(in3(40u), word(43u), word(44u)));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                rgb(i);
+                i.pick(8192);
+                i.pick(6000);
+            },
+            |i, o| {
+                let light = [0, 1, 2].map(|k| i.f(LIGHT + k));
+                put3(o, grade::graded(&params(i).grade, light, i.word(LIGHT + 3), i.word(LIGHT + 4)));
+            },
+            // exp2 of up to 80 in pow, 3 + 2 * 80 roundings, which saturation may double.
+            5e-5,
+        ),
         twin(
             "film/colour_map",
             "afmhot luminance",
@@ -221,7 +266,7 @@ pub fn group() -> Group {
         twin(
             colours,
             "false_colour scaled sequential diverging lab_encoded",
-            "enter_film(); out3(false_colour(in1(8u)));",
+            "enter_film(); out3(false_colour(in1(40u)));",
             push_value,
             |i, o| {
                 let film = params(i);

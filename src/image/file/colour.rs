@@ -245,3 +245,9 @@ pub(super) fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
     let matrix = rec709 * adapted * lights;
     (lights.determinant().abs() > 1e-6 && is_sound(matrix)).then_some(matrix)
 }
+
+/// Light of Rec. 709 as it is when `white`, given in CIE XYZ with a Y of 1, has become the white of Rec. 709: a matrix
+/// by columns. `None` as for `from_xyz`.
+pub fn white_balance(white: [f64; 3]) -> Option<[[f64; 3]; 3]> {
+    from_xyz(Primaries::REC709.to_xyz()?, white.into()).map(|matrix| matrix.to_cols_array_2d())
+}

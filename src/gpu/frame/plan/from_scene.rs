@@ -56,7 +56,8 @@ impl Planner<'_> {
         let emitters = scene.emitters();
         let settings = for_f32(scene.pixel_settings_of(&emitters));
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
-        let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
+        let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent)
+            .over_frame(request.region.full_width, request.region.full_height);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())?;
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
