@@ -1043,6 +1043,19 @@ BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 /** Reads the effects as they are set. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
+/** Sets how strongly effects show: strength, 0 (not at all) .. 1 (default: as physics has it), for those of
+ * BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The effect's
+ * part of the ratio of frequencies counts to the power of the strength: at 0.5 light shifts by half as much in log
+ * frequency. What bhr_set_effects switches off does not show; bhr_set_preset sets all strengths to 1. For films:
+ * docs/physics.md.
+ * Errors: INVALID_ARGUMENT for no bit, LIGHT_DELAY or an unknown bit, or a strength beyond its range. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_set_effect_strength(BhrContext *context, uint32_t effects, double strength);
+
+/** Reads the strength of one effect as it is set, whether or not the effect is switched on. effect is one
+ * bit.
+ * Errors: INVALID_ARGUMENT for other bits than those of bhr_set_effect_strength, or several. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_get_effect_strength(const BhrContext *context, uint32_t effect, double *out_strength);
+
 /** Sets the scene's time in scene lengths; it turns disk, volumes and spots. Default 0. It is the time of the camera's
  * chart at the camera: t, or in chart RAIN, and in STATIC for a camera at or inside a spin-0 horizon, rain time.
  * bhr_camera_advance tells how both go by (docs/cameras.md). */

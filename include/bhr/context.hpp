@@ -158,6 +158,17 @@ class Context {
     /// bhr_get_effects.
     Result<Effects> effects() const { return constant<Effects>(bhr_get_effects); }
 
+    Result<void> set_effect_strength(Effects effects, double strength) {
+        return detail::call(
+            [&] { return bhr_set_effect_strength(get(), static_cast<std::uint32_t>(effects), strength); });
+    }
+    /// bhr_get_effect_strength.
+    Result<double> effect_strength(Effects effect) const {
+        return detail::ask(0.0, [&](double &to) {
+            return bhr_get_effect_strength(get(), static_cast<std::uint32_t>(effect), &to);
+        });
+    }
+
     /// bhr_set_time: in scene lengths, which no clock counts.
     Result<void> set_time(double time) {
         return detail::call([&] { return bhr_set_time(get(), time); });

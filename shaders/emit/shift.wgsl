@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The parts of light's frequency shift that a scene's effects (BHR_EFFECT_*) show. Mirrors src/cpu/shade.rs and
-// src/physics/orbit.rs. Knows no emitter and no colour.
+// The parts of light's frequency shift that a scene's effects (BHR_EFFECT_*) show. Mirrors src/emit/effects.rs
+// and src/physics/orbit.rs. Knows no emitter and no colour.
 
 #import constants
 #import shared/frame
@@ -14,17 +14,23 @@ struct Shift {
     beaming: f32,
 }
 
-// Leaves out of g what the effects switch off. g = gravity * Doppler shift; `gravity` is between the ZAMOs (without
-// spin: static observers) at the emitter and at the camera. Beaming takes all of g or nothing.
+// v^strength, exact where the strength is 0 or 1.
+fn to_strength(v: f32, strength: f32) -> f32 {
+    return select(select(pow(v, strength), v, strength == 1.0), 1.0, strength == 0.0);
+}
+
+// Weakens what of g the effects show less. g = gravity * Doppler shift; `gravity` is between the ZAMOs (without spin:
+// static observers) at the emitter and at the camera. Beaming takes all of g.
 fn visible_shift(g: f32, gravity: f32) -> Shift {
-    var colour = g;
-    if (frame.effects & EFFECT_DOPPLER_SHIFT) == 0u {
-        colour = gravity;
+    let beyond = frame.gravity_strength - frame.doppler_strength;
+    let part = to_strength(gravity, abs(beyond));
+    var colour = to_strength(g, frame.doppler_strength);
+    if beyond < 0.0 {
+        colour /= part;
+    } else {
+        colour *= part;
     }
-    if (frame.effects & EFFECT_GRAVITY_SHIFT) == 0u {
-        colour /= gravity;
-    }
-    return Shift(colour, select(1.0, g, (frame.effects & EFFECT_BEAMING) != 0u));
+    return Shift(colour, to_strength(g, frame.beaming_strength));
 }
 
 // nu(static observer or ZAMO where the camera is), for E and L scaled to nu_local = 1; in the rain frame inside the

@@ -61,10 +61,13 @@ struct Frame {
     turbulence_strength: f32,
     turbulence_delay: f32,
     turbulence_fades_inside: f32,
+    // How strongly the Doppler shift, gravity's shift and beaming show, 0 to 1 (src/emit/effects.rs).
+    doppler_strength: f32,
     // Sine and cosine of the critical angle, and the rays whose capture margin tells the level, of CurveLevel in
     // src/physics/lens/critical.rs.
     critical: vec2<f32>,
     critical_by_margin: u32,
+    gravity_strength: f32,
     // 1/r of the disk's outer and inner edge, (1, 0) without one.
     disk_u: vec2<f32>,
     // 1/r between which crossings hide all that is behind them, (1, 0) without such.
@@ -74,8 +77,8 @@ struct Frame {
     max_crossings: u32,
     // The local frame: 0 static, 1 rain, RAIN_CLOCK rain and of that clock.
     rain: u32,
-    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
-    effects: u32,
+    beaming_strength: f32,
+    // BHR_VIEW_*.
     view: u32,
     // Seed of the turbulence, and the number of its first band.
     pattern_seed: u32,

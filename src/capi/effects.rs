@@ -5,7 +5,8 @@ use super::call::on_context;
 use super::context::BhrContext;
 use super::pointer::{Out, check_finite};
 use super::status::BhrStatus;
-use crate::scene::Effects;
+use crate::error::{Error, out_of_range};
+use crate::scene::{EffectStrengths, Effects};
 
 /// The frequency shift by motion colours the light.
 pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
@@ -25,6 +26,18 @@ const _: () = assert!(
         && BHR_EFFECT_LIGHT_DELAY == Effects::LIGHT_DELAY
         && BHR_EFFECT_ALL == Effects::ALL
 );
+
+/// The effects that may be weakened.
+const GRADED: u32 = Effects::DOPPLER_SHIFT | Effects::GRAVITY_SHIFT | Effects::BEAMING;
+
+/// The strength of each of them, by its bit.
+fn strengths(set: &mut EffectStrengths) -> [(u32, &mut f64); 3] {
+    [
+        (Effects::DOPPLER_SHIFT, &mut set.doppler_shift),
+        (Effects::GRAVITY_SHIFT, &mut set.gravity_shift),
+        (Effects::BEAMING, &mut set.beaming),
+    ]
+}
 
 /// Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
 /// Lensing itself cannot be switched off. LIGHT_DELAY shows where matter is not the same all around (turbulence,
@@ -49,6 +62,63 @@ pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects
         on_context("bhr_get_effects", context, |state| {
             effects.required("out_effects")?;
             effects.set(state.renderer.scene.effects.0);
+            Ok(())
+        })
+    }
+}
+
+/// Sets how strongly effects show: strength, 0 (not at all) .. 1 (default: as physics has it), for those of
+/// BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The effect's
+/// part of the ratio of frequencies counts to the power of the strength: at 0.5 light shifts by half as much in log
+/// frequency. What bhr_set_effects switches off does not show; bhr_set_preset sets all strengths to 1. For films:
+/// docs/physics.md.
+/// Errors: INVALID_ARGUMENT for no bit, LIGHT_DELAY or an unknown bit, or a strength beyond its range. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_effect_strength(context: *mut BhrContext, effects: u32, strength: f64) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_effect_strength", context, |state| {
+            if effects == 0 || effects & !GRADED != 0 {
+                return Err(Error::argument(format!(
+                    "effects is {effects:#x}; it must be bits of DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING, at least one"
+                )));
+            }
+            if !(0.0..=1.0).contains(&strength) {
+                return Err(out_of_range("strength", strength, 0.0, 1.0));
+            }
+            let set = &mut state.renderer.scene.effect_strengths;
+            for (bit, own) in strengths(set) {
+                if effects & bit != 0 {
+                    *own = strength;
+                }
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Reads the strength of one effect as it is set, whether or not the effect is switched on. effect is one
+/// bit.
+/// Errors: INVALID_ARGUMENT for other bits than those of bhr_set_effect_strength, or several. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_effect_strength(
+    context: *const BhrContext,
+    effect: u32,
+    out_strength: *mut f64,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_strength);
+        on_context("bhr_get_effect_strength", context, |state| {
+            out.required("out_strength")?;
+            let mut set = state.renderer.scene.effect_strengths;
+            let found = strengths(&mut set).into_iter().find(|(bit, _)| *bit == effect);
+            let Some((_, strength)) = found else {
+                return Err(Error::argument(format!(
+                    "effect is {effect:#x}; it must be one of DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING"
+                )));
+            };
+            out.set(*strength);
             Ok(())
         })
     }

@@ -10,7 +10,7 @@ use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
 use crate::scene::occluder::Shown;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION};
-use crate::scene::{Scene, View};
+use crate::scene::{EffectStrengths, Scene, View};
 use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub struct Shader<'a> {
     scene: &'a Scene,
     lens: &'a Lens,
     plane: PlaneLight,
+    /// How strongly effects show.
+    effects: EffectStrengths,
     /// `None`: no stars.
     stars: Option<Arc<StarIndex>>,
     least_patch: f64,
@@ -38,6 +40,7 @@ impl<'a> Shader<'a> {
             scene,
             lens,
             plane: PlaneLight::new(&scene.emitters())?,
+            effects: scene.shown_effects(),
             stars: scene.shows_stars().then_some(stars),
             least_patch: least_patch(lens.mapping.pixel_angle),
             maps: [milky_way, scene.shown_map().map(|map| &**map)],
@@ -88,8 +91,7 @@ impl<'a> Shader<'a> {
             }
             let gravity = || nu_static_observer(self.lens, here) / self.nu_zamo_in_plane(crossing.u, here);
             let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
-            let emission =
-                self.plane.at_crossing(crossing, self.scene.effects.visible_shift(crossing.g, gravity), mu, open);
+            let emission = self.plane.at_crossing(crossing, self.effects.visible_shift(crossing.g, gravity), mu, open);
             (0..3).for_each(|c| light[c] += emission.light[c]);
             open *= 1.0 - emission.opacity;
         }
@@ -114,7 +116,7 @@ impl<'a> Shader<'a> {
 
     fn sky_light(&self, here: &Record) -> [f64; 3] {
         let gravity = || nu_static_observer(self.lens, here) / here.energy;
-        let shift = self.scene.effects.visible_shift(here.sky_redshift, gravity);
+        let shift = self.effects.visible_shift(here.sky_redshift, gravity);
         let d = self.chart_to_sky * here.direction;
         // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings
         // them back too.

@@ -13,7 +13,7 @@
 use super::baked::Baked;
 use super::bands::When;
 use super::clouds::{Blur, Carried, CloudPlace, Structure, bend, footprint, worth};
-use super::effects::Effects;
+use super::effects::EffectStrengths;
 use super::glow::{Coefficients, Glow};
 use super::hot_spot::HotSpot;
 use super::layers::{BLOCK_LAYERS, BLOCK_ROUNDING, LEAST_SEEN, Layers};
@@ -114,7 +114,7 @@ pub struct Volumes {
     pub baked: Vec<Option<Arc<Baked>>>,
     /// The offsets of Doran's chart, in which spots in free fall are; `None`: none is.
     pub offsets: Option<OffsetSeries>,
-    effects: Effects,
+    effects: EffectStrengths,
     pub when: When,
     accuracy: Accuracy,
 }
@@ -186,7 +186,7 @@ impl Volumes {
         volumes: &[Volume],
         hot_spots: &[HotSpot],
         spin: f64,
-        effects: Effects,
+        effects: EffectStrengths,
         when: When,
         accuracy: Accuracy,
     ) -> Self {
@@ -223,7 +223,7 @@ impl Volumes {
         let away = |volume: &VolumeMatter| !matches!(volume.cloud.shape, Shape::Jet);
         matches!(&self.volumes[..], [volume] if away(volume))
             && self.hot_spots.is_empty()
-            && self.effects.all_light()
+            && self.effects.are_whole()
             && self.accuracy.alone
     }
 

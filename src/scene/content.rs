@@ -12,7 +12,7 @@ use super::quality::Quality;
 use super::sky::Sky;
 use crate::emit::bands::When;
 use crate::emit::disk::Disk;
-use crate::emit::effects::Effects;
+use crate::emit::effects::{EffectStrengths, Effects};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::matter::Accuracy;
 use crate::emit::thin_disk::ThinDisk;
@@ -90,6 +90,8 @@ pub struct Scene {
     pub sky_picture: Option<SkyPicture>,
     pub film: Film,
     pub effects: Effects,
+    /// How strongly those show that are on. Default all of them as physics has them.
+    pub effect_strengths: EffectStrengths,
     /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time
     /// T = t + H (`physics::geodesic::rain_offset`), which goes on where t ends.
     pub time: f64,
@@ -136,6 +138,7 @@ impl Default for Scene {
             sky_picture: None,
             film: Film::default(),
             effects: Effects(Effects::ALL),
+            effect_strengths: EffectStrengths::default(),
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
@@ -190,6 +193,11 @@ impl Scene {
         self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW })
     }
 
+    /// How strongly effects show: the strengths of those that are on.
+    pub fn shown_effects(&self) -> EffectStrengths {
+        self.effects.shown(self.effect_strengths)
+    }
+
     /// The matter with depth as it is at a time.
     fn volumes_at(&self, when: When, accuracy: Accuracy) -> Volumes {
         // A spot that is told to fall from where the hole, as it is now, has no such place is nowhere.
@@ -198,7 +206,7 @@ impl Scene {
             None => Some(*spot),
         };
         let spots: ArrayVec<_, { HotSpot::MOST }> = self.hot_spots.iter().filter_map(in_chart).collect();
-        Volumes::new(&self.volumes, &spots, self.hole.spin, self.effects, when, accuracy)
+        Volumes::new(&self.volumes, &spots, self.hole.spin, self.shown_effects(), when, accuracy)
     }
 
     /// The matter with depth as an observer at `r` sees it who is at rest, or falls inside the horizon, and whose clock

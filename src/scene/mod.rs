@@ -33,7 +33,7 @@ pub mod project;
 mod rain_tests;
 
 pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
-pub use crate::emit::effects::Effects;
+pub use crate::emit::effects::{EffectStrengths, Effects};
 pub use crate::emit::hot_spot::HotSpot;
 pub use crate::emit::volume::{FlowLaw, Shape, Volume};
 pub use bodies::{Body, BodyEvent, WorldLineEnd};

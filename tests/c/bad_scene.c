@@ -228,6 +228,31 @@ static void time_effects_view(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_set_effects(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT | BHR_EFFECT_LIGHT_DELAY));
     CHECK_OK(bhr_get_effects(context, &watch->effects)); /* which tells unknown bits, too */
     check_unchanged(watch, __FILE__, __LINE__, "unknown effects");
+    /* BEAMING is off, so that its strength does not show. */
+    CHECK_OK(bhr_set_effect_strength(context, BHR_EFFECT_BEAMING, 0.5));
+    CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_BEAMING, &watch->effect_strengths[2]));
+    CHECK(watch->effect_strengths[2] == 0.5, "strength is %g", watch->effect_strengths[2]);
+    static const double strengths[] = {-1e-9, 1.000001, -INFINITY, INFINITY, NAN};
+    for (size_t i = 0; i < COUNT_OF(strengths); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "strength",
+                      bhr_set_effect_strength(context, BHR_EFFECT_BEAMING, strengths[i]));
+    }
+    static const uint32_t not_graded[] = {0, BHR_EFFECT_LIGHT_DELAY, BHR_EFFECT_BEAMING | 16u, BHR_EFFECT_ALL};
+    double                strength;
+    for (size_t i = 0; i < COUNT_OF(not_graded); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "effects",
+                      bhr_set_effect_strength(context, not_graded[i], 0.5));
+        strength = 7.0;
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "effect",
+                      bhr_get_effect_strength(context, not_graded[i], &strength));
+        CHECK(strength == 0.0, "a failed bhr_get_effect_strength left %g", strength);
+    }
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "effect",
+                  bhr_get_effect_strength(context, BHR_EFFECT_BEAMING | BHR_EFFECT_GRAVITY_SHIFT, &strength));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_strength",
+                  bhr_get_effect_strength(context, BHR_EFFECT_BEAMING, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_effect_strength(NULL, BHR_EFFECT_BEAMING, 0.5));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_effect_strength(NULL, BHR_EFFECT_BEAMING, &strength));
     static const int32_t unknown[] = {-1, 8, 1000, INT32_MIN};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "view", bhr_set_view(context, unknown[i]));

@@ -204,6 +204,9 @@ static void ask_getters(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_get_quality(context, &watch->quality));
     CHECK_OK(bhr_get_time(context, &watch->time));
     CHECK_OK(bhr_get_effects(context, &watch->effects));
+    CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT, &watch->effect_strengths[0]));
+    CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_GRAVITY_SHIFT, &watch->effect_strengths[1]));
+    CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_BEAMING, &watch->effect_strengths[2]));
     CHECK_OK(bhr_get_view(context, &watch->view));
     watch->region.struct_size = sizeof watch->region;
     CHECK_OK(bhr_get_region(context, &watch->region, &watch->region_present));
@@ -273,6 +276,8 @@ int check_unchanged(const Watch *watch, const char *file, int line, const char *
         wrong = "quality";
     } else if (now.time != watch->time || now.effects != watch->effects || now.view != watch->view) {
         wrong = "time, effects or view";
+    } else if (memcmp(now.effect_strengths, watch->effect_strengths, sizeof now.effect_strengths) != 0) {
+        wrong = "effect strengths";
     } else if (now.region_present != watch->region_present ||
                memcmp(&now.region, &watch->region, sizeof now.region) != 0) {
         wrong = "region";

@@ -66,6 +66,7 @@ typedef struct Watch {
     BhrQuality    quality;
     double        time;
     uint32_t      effects;
+    double        effect_strengths[3];
     BhrView       view;
     BhrRegion     region;
     int32_t       region_present;

@@ -46,6 +46,7 @@ static void set_odd_scene(BhrContext *context) {
     film.bloom = 0.7, film.exposure_ev = 3.0, film.beam_fwhm = 0.4;
     CHECK_OK(bhr_set_film(context, &film));
     CHECK_OK(bhr_set_effects(context, 0));
+    CHECK_OK(bhr_set_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_BEAMING, 0.3));
 }
 
 static void states_what_the_header_states(BhrContext *context) {
@@ -71,6 +72,8 @@ static void states_what_the_header_states(BhrContext *context) {
                   now.film.colour_map == look->colour_map,
               "preset %d: the film", (int)look->preset);
         CHECK(effects == look->effects, "preset %d: the effects are %#x", (int)look->preset, (unsigned)effects);
+        CHECK(now.effect_strengths[0] == 1.0 && now.effect_strengths[2] == 1.0, "preset %d: the strengths",
+              (int)look->preset);
         CHECK(now.sky.flags == look->sky_flags && now.sky.stars_brightness == 1.0 && now.sky.map_brightness == 1.0,
               "preset %d: the sky", (int)look->preset);
         CHECK(now.sky.seed == 5 && memcmp(now.sky.orientation, odd.sky.orientation, sizeof odd.sky.orientation) == 0,

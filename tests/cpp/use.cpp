@@ -153,6 +153,9 @@ static void scene() {
     EXPECT(context.set_film(film) && context.film().value().tone_map == bhr::ToneMap::agx);
     EXPECT(context.set_effects(bhr::Effects::all & ~bhr::Effects::beaming));
     EXPECT(!bhr::has(context.effects().value(), bhr::Effects::beaming));
+    EXPECT(context.set_effect_strength(bhr::Effects::beaming | bhr::Effects::doppler_shift, 0.25));
+    EXPECT(context.effect_strength(bhr::Effects::beaming).value() == 0.25);
+    EXPECT(!context.set_effect_strength(bhr::Effects::light_delay, 0.25));
     EXPECT(context.set_time(12.5) && context.time().value() == 12.5);
     bhr::Quality quality;
     quality.method = bhr::Method::rk4;

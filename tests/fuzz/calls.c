@@ -278,7 +278,10 @@ static void scene_call(BhrContext *context) {
         check(bhr_set_preset_with(context, constant(BHR_PRESET_TEACHING), &options, NULL));
         break;
     case 10: check(bhr_set_view(context, constant(BHR_VIEW_INTENSITY))); break;
-    case 11: check(bhr_set_effects(context, byte())); break;
+    case 11:
+        check(bhr_set_effects(context, byte()));
+        check(bhr_set_effect_strength(context, byte(), number()));
+        break;
     case 12: check(bhr_metric_at(context, vector, gamma)); break;
     case 13: check(bhr_christoffel_at(context, vector, gamma)); break;
     case 15:

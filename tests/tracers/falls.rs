@@ -44,7 +44,7 @@ fn a_fall_of_240_frames_is_one_film() {
                 jolts.push(bends.map(f64::from).sum::<f64>() / light);
                 frames.remove(0);
             }
-            let step = 0.0205 * (r - (1.0 - root)).max(0.01) * r.sqrt();
+            let step = 0.0175 * (r - (1.0 - root)).max(0.01) * r.sqrt();
             let scene = &mut renderer.scene;
             let (after, passed) = scene.advance_camera(&scene.camera, step).unwrap();
             (scene.camera, scene.time) = (after, scene.time + passed);

@@ -346,6 +346,8 @@ fn random_rays_through_random_matter_give_numbers() {
         scene.hot_spots.iter().for_each(|spot| spot.check().unwrap_or_else(|e| panic!("{e}")));
         scene.volumes.iter().for_each(|volume| volume.check().unwrap_or_else(|e| panic!("{e}")));
         scene.effects = Effects(random.pick(&[Effects::ALL, 0, 3, 5, 8]));
+        scene.effect_strengths.beaming = random.pick(&[1.0, 0.0, 0.5]);
+        scene.effect_strengths.doppler_shift = random.pick(&[1.0, 0.3]);
         renderer.scene = scene;
         let least = if spin == 0.0 { 0.5 } else { 1.08 + (1.0 - spin * spin).sqrt() };
         let given = (0..50).map(|_| {

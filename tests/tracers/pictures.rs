@@ -8,7 +8,9 @@ use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, EmissionLaw, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View};
+use bhr::scene::{
+    Camera, EffectStrengths, Effects, EmissionLaw, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View,
+};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -118,6 +120,14 @@ fn scenes() -> Vec<NamedScene> {
             }),
         ));
     }
+    list.push((
+        "turbulent, with graded effects",
+        Box::new(|r| {
+            r.scene.hole.spin = 0.9;
+            r.scene.effect_strengths = EffectStrengths { doppler_shift: 0.3, gravity_shift: 0.8, beaming: 0.15 };
+            r.scene.disk.as_mut().unwrap().turbulence = 0.8;
+        }),
+    ));
     list.push((
         "turbulent, plunging",
         Box::new(|r| {

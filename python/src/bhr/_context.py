@@ -341,6 +341,17 @@ class Context(SceneText, Tracing):
     def effects(self, effects: Effects | str) -> None:
         self._set(lib.bhr_set_effects, flags(Effects, effects, "effects") & Effects.ALL)
 
+    def effect_strength(self, effect: Effects | str) -> float:
+        """How strongly one effect shows, 0 to 1; 1 is physics (bhr_get_effect_strength)."""
+        strength = ffi.new("double *")
+        with self._gate as context:
+            check(lib.bhr_get_effect_strength(context, flags(Effects, effect, "effect"), strength))
+        return float(strength[0])
+
+    def set_effect_strength(self, effects: Effects | str, strength: float) -> None:
+        """Sets how strongly the Doppler shift, gravity's shift or beaming show, 0 to 1 (bhr_set_effect_strength)."""
+        self._set(lib.bhr_set_effect_strength, flags(Effects, effects, "effects"), strength)
+
     def set_preset(self, preset: PresetLike) -> None:
         """Gives disk, sky, film and effects the values of a named look."""
         self._set(lib.bhr_set_preset, member(Preset, preset, "preset"))

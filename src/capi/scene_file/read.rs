@@ -466,12 +466,13 @@ fn times_of(tracks: &[Track], values: &Values) -> Vec<f64> {
 }
 
 /// The keys of a scene's text that are no fields.
-const KNOWN: [&str; 17] = [
+const KNOWN: [&str; 18] = [
     "version",
     "preset",
     "preset_matter",
     "time",
     "effects",
+    "effect_strengths",
     "view",
     "hole",
     "camera",

@@ -13,18 +13,20 @@ use crate::capi::sky::BhrSky;
 use crate::capi::view;
 use crate::capi::volume::{BhrHotSpot, BhrVolume};
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Effects, Film, Hole, HotSpot, Region, Scene, Volume};
+use crate::scene::{Camera, EffectStrengths, Effects, Film, Hole, HotSpot, Region, Scene, Volume};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use std::mem::offset_of;
 
-/// The values of bhr_set_time, bhr_set_effects and bhr_set_view.
+/// The values of bhr_set_time, bhr_set_effects, bhr_set_view and bhr_set_effect_strength.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct Moment {
     pub time: f64,
     pub effects: u32,
     pub view: i32,
+    /// In the order of the bits.
+    pub effect_strengths: [f64; 3],
 }
 
 /// The values of bhr_set_mass, bhr_set_spin and bhr_set_axis.
@@ -142,12 +144,13 @@ const fn field(name: &'static str, offset: usize, kind: Kind) -> Field {
     Field { name, offset, kind }
 }
 
-// SAFETY: repr(C), 16 bytes without padding, numbers only.
+// SAFETY: repr(C), 40 bytes without padding, numbers only.
 unsafe impl Described for Moment {
     const FIELDS: &'static [Field] = &[
         field("time", offset_of!(Moment, time), Kind::Numbers(1)),
         field("effects", offset_of!(Moment, effects), Kind::Bits(EFFECTS)),
         field("view", offset_of!(Moment, view), Kind::Word(VIEWS)),
+        field("effect_strengths", offset_of!(Moment, effect_strengths), Kind::Numbers(3)),
     ];
 }
 
@@ -352,7 +355,12 @@ impl Values {
         let Hole { mass, spin, axis } = scene.hole;
         let own = |own: &Volume| scene.volumes.iter().position(|volume| volume == own);
         Self {
-            moment: Moment { time: scene.time, effects: scene.effects.0, view: view::number(scene.view) },
+            moment: Moment {
+                time: scene.time,
+                effects: scene.effects.0,
+                view: view::number(scene.view),
+                effect_strengths: scene.effect_strengths.to_array(),
+            },
             hole: HoleValues { mass, spin, axis: axis.to_array() },
             shots: vec![Shot::of(scene.camera.into())],
             disk: scene.disk.map(Into::into),
@@ -447,9 +455,10 @@ impl Values {
         let moved = self.shots.get(shot).map(|shot| shot.camera(&scene)).transpose();
         let (camera, passed) = moved.map_err(at(Section::Camera(shot)))?.unwrap_or((scene.camera, 0.0));
         scene.camera = camera;
-        let Moment { time, effects, view } = self.moment;
+        let Moment { time, effects, view, effect_strengths } = self.moment;
         scene.time = check_finite(time + passed, "time").map_err(at(Section::Moment))?;
         scene.effects = Effects(effects);
+        scene.effect_strengths = EffectStrengths::checked(effect_strengths).map_err(at(Section::Moment))?;
         scene.view = view::view(view, "view").map_err(at(Section::Moment))?;
         scene.disk = self.disk.map(TryInto::try_into).transpose().map_err(at(Section::Disk))?;
         scene.volumes.clear();

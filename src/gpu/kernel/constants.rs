@@ -23,7 +23,7 @@ use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic, quadrature};
 use crate::scene::occluder::NO_THING;
 use crate::scene::refine::{self, Edge};
-use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
+use crate::scene::{ColourMap, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
 use std::fmt::Debug;
 
@@ -126,9 +126,6 @@ fn all() -> Vec<(&'static str, String)> {
         VIEW_METRIC: u32 = View::Metric;
         VIEW_OPTICAL_DEPTH: u32 = View::OpticalDepth;
         VIEW_INTENSITY: u32 = View::Intensity;
-        EFFECT_DOPPLER_SHIFT: u32 = Effects::DOPPLER_SHIFT;
-        EFFECT_GRAVITY_SHIFT: u32 = Effects::GRAVITY_SHIFT;
-        EFFECT_BEAMING: u32 = Effects::BEAMING;
         PERSPECTIVE: u32 = Projection::Perspective;
         FISHEYE: u32 = Projection::Fisheye;
         EQUIRECT: u32 = Projection::Equirect;

@@ -9,7 +9,7 @@ use crate::emit::baking::BakeKey;
 use crate::emit::bands::When;
 use crate::emit::bands::{GENERATION_FADE, Generations, bands_at, generation_key};
 use crate::emit::clouds::{Blur, Carried, CloudPlace, Clouds, bend, footprint, worth};
-use crate::emit::effects::Effects;
+use crate::emit::effects::EffectStrengths;
 use crate::emit::filaments::{
     FILAMENT_LAST, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance, level_variances,
 };
@@ -55,7 +55,7 @@ fn volumes() -> &'static Volumes {
         let (flow, thickness) = (FlowLaw::Outflow, 0.02);
         let jet = Volume { shape: Shape::Jet, flow, thickness, turbulence: 0.6, seed: u64::MAX, ..disk };
         let when = When { time: 12_345.0, reference_delay: 100.0, delayed: true };
-        Volumes::new(&[disk, torus, halo, jet], &[], 0.7, Effects(Effects::ALL), when, Accuracy::PICTURE)
+        Volumes::new(&[disk, torus, halo, jet], &[], 0.7, EffectStrengths::default(), when, Accuracy::PICTURE)
     })
 }
 

@@ -9,7 +9,7 @@ use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::physics::metric::chart;
 use crate::physics::orbit::{horizon_outer, innermost_radius};
 use crate::scene::observer::Lens;
-use crate::scene::{Camera, Chart, Effects, Frustum, Motion, Projection, Region, Scene, Sky};
+use crate::scene::{Camera, Chart, EffectStrengths, Effects, Frustum, Motion, Projection, Region, Scene, Sky};
 use crate::scene::{DiskReference, EmissionLaw};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
@@ -150,8 +150,15 @@ fn made(kind: Kind, number: u32) -> View {
     scene.sky.stars_brightness = random.log(0.5, 2.0);
     scene.sky.map_brightness = random.log(0.1, 2.0);
     scene.sky_map = Some(sky::map().clone());
-    scene.effects =
-        if number.is_multiple_of(2) { Effects(Effects::ALL) } else { Effects(random.bits() as u32 & Effects::ALL) };
+    // Physics, some effects off, some weakened.
+    if number % 3 == 1 {
+        scene.effects = Effects(random.bits() as u32 & Effects::ALL);
+    }
+    if number % 3 == 2 {
+        let mut strength = || random.even(0.0, 1.0);
+        scene.effect_strengths =
+            EffectStrengths { doppler_shift: strength(), gravity_shift: strength(), beaming: strength() };
+    }
     let height = 90;
     let full_width = if scene.camera.projection == Projection::Cube { 6 * height } else { 160 };
     let region = Region { full_width, full_height: height, x: 0, y: 0 };

@@ -217,7 +217,7 @@ pub fn group() -> Group {
         .with(&effects),
         twin(
             "emit/shift",
-            "visible_shift",
+            "visible_shift to_strength",
             "let record = enter_record(); out4(shade_record(vec2<u32>(0u), record));",
             |i| {
                 push_record(i);

@@ -80,7 +80,7 @@ impl Planner<'_> {
                 map: scene.shows_map() && !request.transparent,
                 grid: scene.shows_grid() && !request.transparent,
                 map_sampler: self.samples_maps(scene),
-                all_effects: scene.effects.all_light(),
+                all_effects: scene.shown_effects().are_whole(),
                 plane: emitters.plane_u().is_some(),
                 opaque: emitters.hides_all(),
                 footprints: emitters.needs().places,

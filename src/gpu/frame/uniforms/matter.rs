@@ -178,7 +178,7 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
     }
     let (all, count) = uniforms_of(volumes);
     let mut variant = MatterVariant {
-        all_effects: scene.effects.all_light(),
+        all_effects: scene.shown_effects().are_whole(),
         shows_depth: scene.view.shows_depth_only(),
         structure: volumes.has_structure(),
         occluded: scene.view == View::Light && scene.occluder.is_some(),
