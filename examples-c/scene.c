@@ -17,6 +17,9 @@ const SceneOptions SCENE_DEFAULTS = {
     .exposure = 0.0,
 };
 
+/* The effects that have strengths, in the order of the option and of scene files. */
+static const uint32_t GRADED_EFFECTS[3] = {BHR_EFFECT_DOPPLER_SHIFT, BHR_EFFECT_GRAVITY_SHIFT, BHR_EFFECT_BEAMING};
+
 BhrStatus scene_defaults(Scene *scene) {
     scene->mass = 1.0;
     scene->spin = 0.0;
@@ -24,6 +27,7 @@ BhrStatus scene_defaults(Scene *scene) {
     scene->axis[2] = 1.0;
     scene->time = 0.0;
     scene->effects = BHR_EFFECT_ALL;
+    scene->effect_strengths[0] = scene->effect_strengths[1] = scene->effect_strengths[2] = 1.0;
     scene->view = BHR_VIEW_LIGHT;
     scene->has_disk = scene->has_sky = 1;
     scene->volume_count = scene->hot_spot_count = 0;
@@ -64,7 +68,13 @@ static BhrStatus read_look(Scene *scene, BhrContext *context) {
         scene->has_sky = 1;
         status = bhr_get_film(context, &scene->film);
     }
-    return status >= 0 ? bhr_get_effects(context, &scene->effects) : status;
+    if (status >= 0) {
+        status = bhr_get_effects(context, &scene->effects);
+    }
+    for (int i = 0; i < 3 && status >= 0; i++) {
+        status = bhr_get_effect_strength(context, GRADED_EFFECTS[i], &scene->effect_strengths[i]);
+    }
+    return status;
 }
 
 BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
@@ -140,6 +150,9 @@ BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
     }
     if (status >= 0) {
         status = bhr_set_effects(context, scene->effects);
+    }
+    for (int i = 0; i < 3 && status >= 0; i++) {
+        status = bhr_set_effect_strength(context, GRADED_EFFECTS[i], scene->effect_strengths[i]);
     }
     if (status >= 0) {
         status = bhr_set_view(context, scene->view);

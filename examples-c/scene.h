@@ -26,6 +26,7 @@ typedef struct Scene {
     int        has_sky;
     BhrFilm    film;
     uint32_t   effects; /* BHR_EFFECT_* */
+    double     effect_strengths[3]; /* of GRADED_EFFECTS in scene.c */
     BhrView    view;
     BhrQuality quality;
 } Scene;

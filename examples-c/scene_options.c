@@ -74,6 +74,8 @@ static const SceneOption TABLE[] = {
 
     {"--effects", SCENE_EFFECTS, OPTION_BITS, AT(scene.effects), NULL, NULL, "effects of relativity on light",
      EFFECTS},
+    {"--effect-strengths", SCENE_EFFECTS, OPTION_VECTOR, AT(scene.effect_strengths), "D,G,B", "0 to 1 each",
+     "how strongly the Doppler shift, gravity's shift and beaming show", NULL},
 
     {"--view", SCENE_VIEW, OPTION_CHOICE, AT(scene.view), NULL, NULL, "what a pixel shows", VIEWS},
 };
