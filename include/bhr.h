@@ -362,7 +362,7 @@ void bhr_context_destroy(BhrContext *context);
 BHR_NODISCARD BhrStatus bhr_set_mass(BhrContext *context, double mass);
 
 /** Sets the spin a / M, -1 .. 1; below 0 the hole turns towards -ph. Default 0. Beyond +-0.9999 frames
- * and bhr_transfer_rays are UNSUPPORTED; rays, points, bodies and cameras are not. */
+ * and bhr_transfer_rays are UNSUPPORTED; single rays, points, world lines and camera moves go on to +-1. */
 BHR_NODISCARD BhrStatus bhr_set_spin(BhrContext *context, double spin);
 
 /** Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. */
@@ -508,7 +508,7 @@ typedef struct BhrCamera {
     uint32_t reserved2; /**< Reserved: 0. @since 0.2.0 */
     /** BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths
      * and points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that
-     * is to go there is told in it from its begin. Default STATIC. @since 0.2.0 */
+     * is to go there must be told in it from the start. Default STATIC. @since 0.2.0 */
     BhrChart chart;
     BhrTransport transport; /**< BHR_TRANSPORT_*. Default TRIAD. @since 0.2.0 */
 } BhrCamera;
@@ -993,28 +993,29 @@ typedef struct BhrFilm {
     double beam_fwhm;
     BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0 */
     uint32_t reserved;       /**< 0. @since 0.2.0 */
-    /** Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
-     * @since 0.2.0 */
+    /** Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
+     * 0: colours stay as they are. @since 0.2.0 */
     double white_balance;
-    /** -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint
-     * above the blackbodies' in the CIE 1960 diagram (Duv). @since 0.2.0 */
+    /** -1 .. 1: the picture turns towards magenta above 0, towards green below. Default 0. The light that is to look
+     * white has a Duv of 0.02 tint (CIE 1960): above 0 it is greener than a blackbody's. @since 0.2.0 */
     double tint;
-    /** The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1. @since 0.2.0 */
+    /** 0.25 .. 4, the exponent of light; light of 0.18, middle grey, stays as it is. Default 1. @since 0.2.0 */
     double contrast;
-    /** The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1. @since 0.2.0 */
+    /** 0 .. 4, a factor on how far colours are from the grey of their luminance; 0 is grey. Default 1. @since 0.2.0 */
     double saturation;
-    /** FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5. @since 0.2.0 */
+    /** FILMIC, 0 .. 1: at 0 dark light stays linear, at 1 all of the toe, the curve's dark end, is black. Default 0.5.
+     * @since 0.2.0 */
     double toe_strength;
     double toe_length; /**< FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5. @since 0.2.0 */
     /** FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2. @since 0.2.0 */
     double shoulder_strength;
-    /** FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
-     * @since 0.2.0 */
+    /** FILMIC, 0 .. 1: the share that the shoulder, the curve's bright end, has of all that is above the toe. Default
+     * 0.5. @since 0.2.0 */
     double shoulder_length;
     /** FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1. @since 0.2.0 */
     double shoulder_angle;
-    /** 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
-     * a quarter there. Default 0. @since 0.2.0 */
+    /** 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
+     * frame: at 1, light is a quarter there. Default 0. @since 0.2.0 */
     double vignette;
 } BhrFilm;
 
@@ -1044,10 +1045,11 @@ BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
 /** Sets how strongly effects show: strength, 0 (not at all) .. 1 (default: as physics has it), for those of
- * BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The effect's
- * part of the ratio of frequencies counts to the power of the strength: at 0.5 light shifts by half as much in log
- * frequency. What bhr_set_effects switches off does not show; bhr_set_preset sets all strengths to 1. For films:
- * docs/physics.md.
+ * BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The
+ * effect's factor counts to the power of the strength, for colours its part of the ratio of frequencies g, for BEAMING
+ * all of g: at 0.5 light shifts by half as much in log frequency. What bhr_set_effects switches off does not show;
+ * bhr_set_preset sets all strengths to 1. Like effects, they change light alone, not g as views, rays and crossings
+ * tell it. docs/physics.md.
  * Errors: INVALID_ARGUMENT for no bit, LIGHT_DELAY or an unknown bit, or a strength beyond its range. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_effect_strength(BhrContext *context, uint32_t effects, double strength);
 

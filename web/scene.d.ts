@@ -111,7 +111,7 @@ export interface Camera {
     /**
      * One of Chart: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths and
      * points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that is to
-     * go there is told in it from its begin. Default STATIC.
+     * go there must be told in it from the start. Default STATIC.
      * @default "static"
      */
     chart: Chart;
@@ -506,32 +506,33 @@ export interface Film {
      */
     colour_map: ColourMap;
     /**
-     * Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
+     * Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
+     * 0: colours stay as they are.
      * @range 1667 .. 25000 K
      * @default 0
      */
     white_balance: number;
     /**
-     * -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint above
-     * the blackbodies' in the CIE 1960 diagram (Duv).
+     * -1 .. 1: the picture turns towards magenta above 0, towards green below. Default 0. The light that is to look
+     * white has a Duv of 0.02 tint (CIE 1960): above 0 it is greener than a blackbody's.
      * @range -1 .. 1
      * @default 0
      */
     tint: number;
     /**
-     * The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1.
+     * 0.25 .. 4, the exponent of light; light of 0.18, middle grey, stays as it is. Default 1.
      * @range 0.25 .. 4
      * @default 1
      */
     contrast: number;
     /**
-     * The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1.
+     * 0 .. 4, a factor on how far colours are from the grey of their luminance; 0 is grey. Default 1.
      * @range 0 .. 4
      * @default 1
      */
     saturation: number;
     /**
-     * FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5.
+     * FILMIC, 0 .. 1: at 0 dark light stays linear, at 1 all of the toe, the curve's dark end, is black. Default 0.5.
      * @range 0 .. 1
      * @default 0.5
      */
@@ -549,7 +550,8 @@ export interface Film {
      */
     shoulder_strength: number;
     /**
-     * FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
+     * FILMIC, 0 .. 1: the share that the shoulder, the curve's bright end, has of all that is above the toe. Default
+     * 0.5.
      * @range 0 .. 1
      * @default 0.5
      */
@@ -561,8 +563,8 @@ export interface Film {
      */
     shoulder_angle: number;
     /**
-     * 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to a
-     * quarter there. Default 0.
+     * 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
+     * frame: at 1, light is a quarter there. Default 0.
      * @range 0 .. 1
      * @default 0
      */

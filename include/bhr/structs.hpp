@@ -224,26 +224,26 @@ struct Film {
     ColourMap colour_map;
     /// Reserved: 0.
     std::uint32_t reserved;
-    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white.
+    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture.
     double white_balance;
-    /// -1 .. 1, towards magenta above 0 and green below.
+    /// -1 .. 1: the picture turns towards magenta above 0, towards green below.
     double tint;
-    /// The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4.
+    /// 0.25 .. 4, the exponent of light; light of 0.18, middle grey, stays as it is.
     double contrast;
-    /// The distance of colours from grey of their luminance, 0 .. 4; 0 is grey.
+    /// 0 .. 4, a factor on how far colours are from the grey of their luminance; 0 is grey.
     double saturation;
-    /// FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1.
+    /// FILMIC, 0 .. 1: at 0 dark light stays linear, at 1 all of the toe, the curve's dark end, is black.
     double toe_strength;
     /// FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2.
     double toe_length;
     /// FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white.
     double shoulder_strength;
-    /// FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1.
+    /// FILMIC, 0 .. 1: the share that the shoulder, the curve's bright end, has of all that is above the toe.
     double shoulder_length;
     /// FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat.
     double shoulder_angle;
-    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
-    /// a quarter there.
+    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
+    /// frame: at 1, light is a quarter there.
     double vignette;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }

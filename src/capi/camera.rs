@@ -108,7 +108,7 @@ pub struct BhrCamera {
     pub reserved2: u32,
     /// BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths
     /// and points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that
-    /// is to go there is told in it from its begin. Default STATIC. @since 0.2.0
+    /// is to go there must be told in it from the start. Default STATIC. @since 0.2.0
     pub chart: BhrChart,
     /// BHR_TRANSPORT_*. Default TRIAD. @since 0.2.0
     pub transport: BhrTransport,

@@ -68,10 +68,11 @@ pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects
 }
 
 /// Sets how strongly effects show: strength, 0 (not at all) .. 1 (default: as physics has it), for those of
-/// BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The effect's
-/// part of the ratio of frequencies counts to the power of the strength: at 0.5 light shifts by half as much in log
-/// frequency. What bhr_set_effects switches off does not show; bhr_set_preset sets all strengths to 1. For films:
-/// docs/physics.md.
+/// BHR_EFFECT_DOPPLER_SHIFT, GRAVITY_SHIFT and BEAMING whose bits are in effects; others stay as they are. The
+/// effect's factor counts to the power of the strength, for colours its part of the ratio of frequencies g, for BEAMING
+/// all of g: at 0.5 light shifts by half as much in log frequency. What bhr_set_effects switches off does not show;
+/// bhr_set_preset sets all strengths to 1. Like effects, they change light alone, not g as views, rays and crossings
+/// tell it. docs/physics.md.
 /// Errors: INVALID_ARGUMENT for no bit, LIGHT_DELAY or an unknown bit, or a strength beyond its range. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_effect_strength(context: *mut BhrContext, effects: u32, strength: f64) -> BhrStatus {

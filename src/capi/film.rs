@@ -56,29 +56,30 @@ pub struct BhrFilm {
     pub colour_map: BhrColourMap,
     /// 0. @since 0.2.0
     pub reserved: u32,
-    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white. Default 0: colours stay as they are.
-    /// @since 0.2.0
+    /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
+    /// 0: colours stay as they are. @since 0.2.0
     pub white_balance: f64,
-    /// -1 .. 1, towards magenta above 0 and green below. Default 0. The light that is to look white lies 0.02 tint
-    /// above the blackbodies' in the CIE 1960 diagram (Duv). @since 0.2.0
+    /// -1 .. 1: the picture turns towards magenta above 0, towards green below. Default 0. The light that is to look
+    /// white has a Duv of 0.02 tint (CIE 1960): above 0 it is greener than a blackbody's. @since 0.2.0
     pub tint: f64,
-    /// The exponent of light about middle grey, 0.18, which stays: 0.25 .. 4. Default 1. @since 0.2.0
+    /// 0.25 .. 4, the exponent of light; light of 0.18, middle grey, stays as it is. Default 1. @since 0.2.0
     pub contrast: f64,
-    /// The distance of colours from grey of their luminance, 0 .. 4; 0 is grey. Default 1. @since 0.2.0
+    /// 0 .. 4, a factor on how far colours are from the grey of their luminance; 0 is grey. Default 1. @since 0.2.0
     pub saturation: f64,
-    /// FILMIC: how much darker the toe, the curve's dark end, is than light, 0 .. 1. Default 0.5. @since 0.2.0
+    /// FILMIC, 0 .. 1: at 0 dark light stays linear, at 1 all of the toe, the curve's dark end, is black. Default 0.5.
+    /// @since 0.2.0
     pub toe_strength: f64,
     /// FILMIC: 0 .. 1; the toe ends at light toe_length^2.2 / 2. Default 0.5. @since 0.2.0
     pub toe_length: f64,
     /// FILMIC: stops, 0 .. 16; light from about 2^shoulder_strength on is white. Default 2. @since 0.2.0
     pub shoulder_strength: f64,
-    /// FILMIC: how much of the values above the toe the shoulder, the curve's bright end, has, 0 .. 1. Default 0.5.
-    /// @since 0.2.0
+    /// FILMIC, 0 .. 1: the share that the shoulder, the curve's bright end, has of all that is above the toe. Default
+    /// 0.5. @since 0.2.0
     pub shoulder_length: f64,
     /// FILMIC: how steep the shoulder still is at white, 0 .. 1; at 0 it ends flat. Default 1. @since 0.2.0
     pub shoulder_angle: f64,
-    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the frame's corners: to
-    /// a quarter there. Default 0. @since 0.2.0
+    /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
+    /// frame: at 1, light is a quarter there. Default 0. @since 0.2.0
     pub vignette: f64,
 }
 

@@ -23,7 +23,7 @@ pub unsafe extern "C" fn bhr_set_mass(context: *mut BhrContext, mass: f64) -> Bh
 }
 
 /// Sets the spin a / M, -1 .. 1; below 0 the hole turns towards -ph. Default 0. Beyond +-0.9999 frames
-/// and bhr_transfer_rays are UNSUPPORTED; rays, points, bodies and cameras are not.
+/// and bhr_transfer_rays are UNSUPPORTED; single rays, points, world lines and camera moves go on to +-1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_spin(context: *mut BhrContext, spin: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -55,8 +55,8 @@ impl Hole {
         }
         let spin = Number(self.spin);
         Err(Error::unsupported(format!(
-            "spin is {spin}; {what} takes spins in [-{MAX_SHOWN_SPIN}, {MAX_SHOWN_SPIN}]; beyond are rays and \
-             world lines only"
+            "spin is {spin}; {what} takes spins in [-{MAX_SHOWN_SPIN}, {MAX_SHOWN_SPIN}]; for faster holes \
+             there are only rays, points and world lines"
         )))
     }
 
