@@ -1053,8 +1053,7 @@ BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out
  * Errors: INVALID_ARGUMENT for no bit, LIGHT_DELAY or an unknown bit, or a strength beyond its range. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_effect_strength(BhrContext *context, uint32_t effects, double strength);
 
-/** Reads the strength of one effect as it is set, whether or not the effect is switched on. effect is one
- * bit.
+/** Reads the strength of the effect whose bit is given, as it is set, whether or not it is switched on.
  * Errors: INVALID_ARGUMENT for other bits than those of bhr_set_effect_strength, or several. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_effect_strength(const BhrContext *context, uint32_t effect, double *out_strength);
 

@@ -98,8 +98,7 @@ pub unsafe extern "C" fn bhr_set_effect_strength(context: *mut BhrContext, effec
     }
 }
 
-/// Reads the strength of one effect as it is set, whether or not the effect is switched on. effect is one
-/// bit.
+/// Reads the strength of the effect whose bit is given, as it is set, whether or not it is switched on.
 /// Errors: INVALID_ARGUMENT for other bits than those of bhr_set_effect_strength, or several. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_effect_strength(

@@ -45,7 +45,7 @@ impl Effects {
 /// How strongly the effects show that colour light or change its brightness, each from 0, not at all, to 1, as physics
 /// has it. Between them, the part of the frequency ratio that is the effect's counts to the power of its strength, so
 /// that half a strength is half the shift in log frequency. (For "Interstellar" such shifts were left out altogether:
-/// James, von Tunzelmann, Franklin & Thorne 2015, Class. Quantum Grav. 32, 065001, section 4.3.)
+/// James, von Tunzelmann, Franklin & Thorne 2015, Class. Quantum Grav. 32, 065001.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EffectStrengths {
     pub doppler_shift: f64,
