@@ -65,6 +65,18 @@ fn command() -> Command {
         .arg(option("size", "WxH", "Pixels, instead of the scene's"))
         .arg(option("tile", "X,Y,W,H", "Only this part of each frame"))
         .arg(option("samples", "N", "Rays of a pixel, instead of the scene's").value_parser(value_parser!(u32)))
+        .arg(
+            option(
+                "shutter",
+                "DEGREES",
+                "Motion blur: how long the shutter is open, 0 to 360, of a frame's time; 0: off",
+            )
+            .value_parser(value_parser!(f64)),
+        )
+        .arg(
+            option("shutter-samples", "N", "The moments of a blurred frame, 2 to 4096; default 16")
+                .value_parser(value_parser!(u32).range(2..=4096)),
+        )
         .arg(flag("float", "Pixels of 32 bits in .exr files, instead of 16"))
         .arg(flag("transparent", "Without the sky; alpha says where it was"))
         .arg(option("outputs", "LIST", "Layers of .exr files beside the light: depth,sky,position,position1 .."))

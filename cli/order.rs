@@ -31,6 +31,15 @@ impl Stereo {
     }
 }
 
+/// Motion blur: a frame shows the time from its moment on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shutter {
+    /// The share of a frame's time that the shutter is open.
+    open: f64,
+    /// The moments that are rendered.
+    samples: u32,
+}
+
 pub struct Order {
     pub opened: Opened,
     /// Frames a second.
@@ -40,6 +49,8 @@ pub struct Order {
     /// The part of the full frame.
     tile: Option<[u32; 4]>,
     samples: Option<u32>,
+    /// `None`: frames show one moment.
+    shutter: Option<Shutter>,
     /// The video that frames go into; `None`: each has a file of its own.
     pub codec: Option<Codec>,
     format: PixelFormat,
@@ -130,6 +141,18 @@ fn stereo_of(given: &ArgMatches) -> Result<Option<Stereo>, Ending> {
     }
 }
 
+fn shutter_of(given: &ArgMatches) -> Result<Option<Shutter>, Ending> {
+    let degrees = given.get_one::<f64>("shutter").copied().unwrap_or(0.0);
+    if !(0.0..=360.0).contains(&degrees) {
+        return Err(Ending::usage(format!("--shutter {degrees}: it must lie in [0, 360]")));
+    }
+    let samples = given.get_one::<u32>("shutter-samples").copied();
+    if degrees == 0.0 && samples.is_some() {
+        return Err(Ending::usage("--shutter-samples: it is for motion blur; set --shutter"));
+    }
+    Ok((degrees > 0.0).then(|| Shutter { open: degrees / 360.0, samples: samples.unwrap_or(16) }))
+}
+
 impl Order {
     pub fn new(given: &ArgMatches) -> Result<Self, Ending> {
         let opened = open::scene(given)?;
@@ -157,6 +180,10 @@ impl Order {
             ));
         }
         let samples = given.get_one::<u32>("samples").copied();
+        let shutter = shutter_of(given)?;
+        if shutter.is_some() && (tile.is_some() || stereo.is_some() || !outputs.is_empty()) {
+            return Err(Ending::usage("--shutter: motion blur is for whole frames of one eye without --outputs"));
+        }
         let transparent = given.get_flag("transparent");
         let map = opened.file.map().map(|map| std::fs::read(map).map_err(|error| Ending::io(map, error)));
         let map = map.transpose()?.map(|bytes| hash(&bytes));
@@ -165,9 +192,25 @@ impl Order {
         if stereo.is_some() || !outputs.is_empty() {
             all += &format!(" {stereo:?} {outputs:?}");
         }
+        if let Some(shutter) = shutter {
+            all += &format!(" {shutter:?} {:x}", render.frames_per_second.to_bits());
+        }
         let scene_hash = hash(all.as_bytes());
         let rate = render.frames_per_second;
-        let order = Self { opened, rate, size, tile, samples, codec, format, transparent, stereo, outputs, scene_hash };
+        let order = Self {
+            opened,
+            rate,
+            size,
+            tile,
+            samples,
+            shutter,
+            codec,
+            format,
+            transparent,
+            stereo,
+            outputs,
+            scene_hash,
+        };
         if let Some(codec) = &order.codec {
             let Layout { width, height, .. } = order.layout();
             codec.check(width, height, transparent)?;
@@ -177,7 +220,12 @@ impl Order {
 
     /// Puts a frame's scene into the renderer; its region, and the size of one eye's image.
     fn show(&self, frame: u32, renderer: &mut Renderer) -> Result<(Option<Region>, [u32; 2]), Ending> {
-        let region = self.opened.show(f64::from(frame) / self.rate, renderer)?;
+        self.show_at(f64::from(frame), renderer)
+    }
+
+    /// [`Self::show`] of a moment between frames.
+    fn show_at(&self, frame: f64, renderer: &mut Renderer) -> Result<(Option<Region>, [u32; 2]), Ending> {
+        let region = self.opened.show(frame / self.rate, renderer)?;
         if let Some(samples) = self.samples {
             renderer.scene.quality.samples_per_pixel = samples;
             renderer.scene.quality.check()?;
@@ -272,7 +320,10 @@ impl Order {
         let (region, [width, height]) = self.show(frame, renderer)?;
         let (places, _) = self.places()?;
         let asked = |ending| signals.check().err().unwrap_or(ending);
-        if places.len() > 1 {
+        if let Some(shutter) = self.shutter {
+            self.render_blurred((frame, shutter), (pixels, &places), renderer, lost, signals)?;
+            self.show(frame, renderer)?;
+        } else if places.len() > 1 {
             let rendered = recovering(renderer, lost, |renderer| {
                 let mut rest = &mut *pixels;
                 let mut targets = Vec::new();
@@ -303,6 +354,31 @@ impl Order {
         }
         let whole = Region { full_width: width, full_height: height, x: 0, y: 0 };
         Ok(renderer.scene.made(&region.unwrap_or(whole)))
+    }
+
+    /// Renders the moments of a frame and develops their mean.
+    fn render_blurred(
+        &self,
+        (frame, shutter): (u32, Shutter),
+        (pixels, places): (&mut [u32], &[Place]),
+        renderer: &mut Renderer,
+        lost: &mut u32,
+        signals: &Signals,
+    ) -> Result<(), Ending> {
+        let asked = |ending| signals.check().err().unwrap_or(ending);
+        renderer.begin_accumulation(self.size, self.transparent)?;
+        for sample in 0..shutter.samples {
+            let share = (f64::from(sample) + 0.5) / f64::from(shutter.samples);
+            let (region, _) = self.show_at(f64::from(frame) + share * shutter.open, renderer)?;
+            if region.is_some() {
+                return Err(Ending::data("--shutter: the scene has a region, and blurred frames are whole"));
+            }
+            let added = recovering(renderer, lost, |renderer| renderer.accumulate(1.0, &mut |_| !signals.has_come()));
+            added.map_err(asked)?;
+        }
+        let layout = places.first().map_or_else(|| self.layout(), |place| place.layout);
+        let mut image = ImageMut::new(layout, bytemuck::cast_slice_mut(pixels))?;
+        Ok(renderer.end_accumulation(&mut image, self.transparent)?)
     }
 
     /// Each eye's picture in the frame, and the byte at which it begins; one without an eye is all of it.

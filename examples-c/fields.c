@@ -236,6 +236,25 @@ const Field FILM_FIELDS[] = {
     {"--vignette", OPTION_DOUBLE, offsetof(BhrFilm, vignette), NULL, 0, 1, "0 .. 1",
      "0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the "
      "whole frame: at 1, light is a quarter there", NULL},
+    {"--auto-exposure", OPTION_DOUBLE, offsetof(BhrFilm, auto_exposure), "EV", 0, 1, "0 .. 1",
+     "auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target", NULL},
+    {"--auto-percentile", OPTION_DOUBLE, offsetof(BhrFilm, auto_percentile), NULL, 0, 100, "0 .. 100",
+     "the percentile of the frame's luminance that auto exposure goes by, 0 .. 100", NULL},
+    {"--auto-target", OPTION_DOUBLE, offsetof(BhrFilm, auto_target), NULL, 0.001, 1000, "0.001 .. 1000",
+     "the luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18", NULL},
+    {"--auto-least-ev", OPTION_DOUBLE, offsetof(BhrFilm, auto_least_ev), "EV", -20, 20, "-20 .. 20",
+     "the least that auto exposure adds, stops, -20 .. 20", NULL},
+    {"--auto-most-ev", OPTION_DOUBLE, offsetof(BhrFilm, auto_most_ev), "EV", -20, 20, "-20 .. 20",
+     "the most that auto exposure adds, stops, -20 .. 20", NULL},
+    {"--auto-adaptation", OPTION_DOUBLE, offsetof(BhrFilm, auto_adaptation), NULL, 1e-6, 1, "1e-6 .. 1",
+     "0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that "
+     "this context measured", NULL},
+    {"--highlights", OPTION_DOUBLE, offsetof(BhrFilm, highlights), "EV", 0, 1, "0 .. 1",
+     "local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture "
+     "lose; their structure stays", NULL},
+    {"--shadows", OPTION_DOUBLE, offsetof(BhrFilm, shadows), "EV", 0, 1, "0 .. 1",
+     "local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose; "
+     "black stays black", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

@@ -8,10 +8,10 @@
  *   version; status, messages; log; adapters; windows of the host; context; the black hole; charts;
  *   the camera: an observer with a lens; cameras as matrices; accretion disk; matter with depth: volumes and hot spots;
  *   images in the host's memory; sky; film; relativistic effects, time; presets: named looks; quality;
- *   what a pixel shows; parts of a larger frame; scenes as text; rendering into memory; rendering in the background;
- *   outputs beside the picture; the host's things before the camera; rendering into windows;
- *   rays: the same tracer, asked directly; points on the screen; the matter with depth along rays; bodies in free fall;
- *   numbers about the last finished frame.
+ *   what a pixel shows; parts of a larger frame; scenes as text; rendering into memory; the mean of several frames;
+ *   rendering in the background; outputs beside the picture; the host's things before the camera;
+ *   rendering into windows; rays: the same tracer, asked directly; points on the screen;
+ *   the matter with depth along rays; bodies in free fall; numbers about the last finished frame.
  *
  * Example
  *   #include "bhr.h"
@@ -976,8 +976,8 @@ typedef int32_t BhrColourMap;
 #define BHR_COLOUR_MAP_AFMHOT 1
 
 /** How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
- * radiance, and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast,
- * saturation, tone map, the sRGB curve or the colour map, dithering. */
+ * radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
+ * vignette, white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -1017,6 +1017,29 @@ typedef struct BhrFilm {
     /** 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
      * frame: at 1, light is a quarter there. Default 0. @since 0.2.0 */
     double vignette;
+    /** Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
+     * frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
+     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
+    double auto_exposure;
+    /** The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0 */
+    double auto_percentile;
+    /** The luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18. Default 0.5.
+     * @since 0.2.0 */
+    double auto_target;
+    double auto_least_ev; /**< The least that auto exposure adds, stops, -20 .. 20. Default -8. @since 0.2.0 */
+    /** The most that auto exposure adds, stops, -20 .. 20. Default 8. If it is below auto_least_ev, this is what is
+     * added. @since 0.2.0 */
+    double auto_most_ev;
+    /** 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
+     * context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
+     * time constant T it is 1 - exp(-t / T). @since 0.2.0 */
+    double auto_adaptation;
+    /** Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+     * their structure stays. Default 0: off. Regions as for auto_exposure. @since 0.2.0 */
+    double highlights;
+    /** Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
+     * black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0 */
+    double shadows;
 } BhrFilm;
 
 /** Fills in the defaults. */
@@ -1306,7 +1329,7 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
  * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times as
- * wide as high, or for bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon
+ * wide as high, or for bloom, a beam or a measured film with a region set; UNSUPPORTED inside a spinning hole's horizon
  * in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
@@ -1318,6 +1341,30 @@ BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *ta
  * says what is made when.
  * Errors: those of bhr_render_image. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
+
+/* ---- the mean of several frames ---- */
+
+/** Begins to add the light of frames up: for motion blur (the host moves time, camera and bodies between them), depth
+ * of field (the camera moves across a lens), or finer pixels. width and height in pixels, flags 0 or
+ * BHR_IMAGE_TRANSPARENT, as the image will have them. Frames that were added before are forgotten. Takes 32 bytes a
+ * pixel until bhr_end_accumulation; other calls render meanwhile as ever.
+ * Errors: INVALID_ARGUMENT for a size that no image has, or an unknown flag; OUT_OF_MEMORY. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_begin_accumulation(BhrContext *context, uint32_t width, uint32_t height, uint32_t flags);
+
+/** Renders a whole frame of the scene as it is now, and adds its light times weight, 0.000001 .. 1000000: 1 for a
+ * shutter that is open or shut. The view must be LIGHT; the film does not matter yet. Up to 65536 frames. After an
+ * error nothing is added.
+ * Errors: INVALID_STATE without bhr_begin_accumulation, with a region set, or after too many frames; INVALID_ARGUMENT
+ * for a weight out of range; those of bhr_render_image. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_accumulate(BhrContext *context, double weight);
+
+/** Develops the weighted mean of the frames that were added, by the film as it is now, into an image of the size and
+ * the BHR_IMAGE_TRANSPARENT that they were begun with, on the processor; then forgets them. Auto exposure does not
+ * adapt: the mean gets its own exposure. target NULL: forgets the frames, if there are any. After an error they are
+ * kept. bhr_frame_stats then has the auto_ev and the cpu_ns of this call.
+ * Errors: INVALID_STATE where no frame was added; INVALID_ARGUMENT for another size or transparency, or R32F;
+ * OUT_OF_MEMORY. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_end_accumulation(BhrContext *context, const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 
@@ -1717,6 +1764,8 @@ typedef struct BhrFrameStats {
     uint64_t device_bytes; /**< Device memory that the context holds. */
     /** Lens tables made for this frame: 0 where those of an earlier one served, or none were needed. @since 0.2.0 */
     uint64_t lens_tables;
+    /** Stops that auto exposure (BhrFilm.auto_exposure) added to the film's exposure_ev; 0 without it. @since 0.2.0 */
+    double auto_ev;
 } BhrFrameStats;
 
 /** Sets struct_size, which calls that fill the struct read, and clears the rest. @since 0.2.0 */

@@ -3,6 +3,7 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
+mod accumulation;
 mod first;
 mod made;
 mod presets;
@@ -67,6 +68,8 @@ pub struct Renderer {
     copiers: Arc<Copiers>,
     /// How the pixels were made that hosts may have.
     made: MadeFrames,
+    /// Frames that are being added up.
+    accumulation: Option<accumulation::Accumulation>,
     /// How long the presets' frames with depth take, as far as that was measured.
     depth_costs: [Vec<DepthCost>; Preset::COUNT],
     /// The threads for jobs, from the first job on.
@@ -113,6 +116,7 @@ impl Renderer {
             stats: StatsBoard::default(),
             copiers: Arc::default(),
             made: MadeFrames::default(),
+            accumulation: None,
             depth_costs: Default::default(),
             worker: None,
             surfaces: Vec::new(),
@@ -323,7 +327,7 @@ impl Renderer {
     }
 
     /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a spin beyond those of
-    /// frames; a region with bloom or a beam; a format that does not go with the view.
+    /// frames; a region with bloom or a beam, or with a film that measures the frame; a format that does not go with the view.
     fn request(
         &self,
         format: PixelFormat,
@@ -336,10 +340,22 @@ impl Renderer {
         region.check_image(width, height)?;
         self.scene.hole.check_shown("a frame")?;
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
-        if blooms && (set || strips) && !(self.scene.film.glare_is_optional && self.scene.film.beam_fwhm == 0.0) {
-            let film = &self.scene.film;
-            let spread = [("bloom", "glare", film.bloom), ("beam_fwhm", "its light", film.beam_fwhm)];
-            let (name, light, value) = if film.bloom > 0.0 { spread[0] } else { spread[1] };
+        let film = &self.scene.film;
+        let optional = film.glare_is_optional && film.beam_fwhm == 0.0 && !film.is_metered();
+        if blooms && (set || strips) && !optional {
+            let spread = [
+                ("bloom", "glare", film.bloom),
+                ("beam_fwhm", "its light", film.beam_fwhm),
+                ("auto_exposure", "the exposure", film.auto_exposure.strength),
+                ("highlights", "what is bright", film.highlights),
+                ("shadows", "what is dark", film.shadows),
+            ];
+            // Glare that may be left out is not what is in the way.
+            let in_the_way =
+                |(name, _, value): &&(&str, &str, f64)| *value > 0.0 && !(*name == "bloom" && film.glare_is_optional);
+            let Some((name, light, value)) = spread.iter().find(in_the_way).copied() else {
+                return Err(Error::internal("a film that parts of a frame cannot have"));
+            };
             return Err(Error::state(format!(
                 "film {name} is {}: {light} comes from the whole frame, and {} is set; set no {}, or {name} 0",
                 Number(value),

@@ -78,7 +78,7 @@ impl Tracer {
         let strips = scene.camera.strips(&request.region, request.width)?;
         let mut scene = without_tables(scene);
         // A strip may be all of a narrow frame, and would have the glare that others have not.
-        scene.film.bloom = 0.0;
+        scene.film = scene.film.of_parts();
         let mut sum = FrameStats::default();
         let count = strips.len();
         for (number, strip) in strips.into_iter().enumerate() {

@@ -143,6 +143,7 @@ const LAYERS: Because = Because("it counts the layers of a piece, of which there
 const CELLS: Because = Because(
     "a turn that goes on leaves `cuts` above 1; every other one adds to `cut` or `cell`: 16 times 256 turns at most",
 );
+const BLOCK: Because = Because("it counts the cells of a block, of which the host allows 84 along a side");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
@@ -190,6 +191,12 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         Because("every turn adds 1 to `steps` before it can `continue`; the host keeps max_steps at 100000 or less"),
     ),
     ("geodesic/trace", "trace", "for (var part = select(1u, 0u, meets); part < 2u; part += 1u)", CONSTANT),
+    ("metering/expose", "expose", "for (var reach = 1u; reach < METER_BINS; reach *= 2u)", CONSTANT),
+    ("metering/measure", "measure", "for (var bin = thread; bin < METER_BINS; bin += THREADS)", CONSTANT),
+    ("metering/measure", "measure", "for (var i = thread; i < meter.side * meter.side; i += THREADS)", BLOCK),
+    ("metering/measure", "measure", "for (var bin = thread; bin < METER_BINS; bin += THREADS)", CONSTANT),
+    ("metering/smooth", "smooth_blocks", "for (var dy = -2; dy <= 2; dy += 1)", CONSTANT),
+    ("metering/smooth", "smooth_blocks", "for (var dx = -2; dx <= 2; dx += 1)", CONSTANT),
     ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 1u)", ORDERS),
     ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 4u)", ORDERS),
     ("lens/kerr_flags", "flag_cells", "for (var k = 0u; k < 4u && order + k < orders; k += 1u)", CONSTANT),

@@ -468,8 +468,8 @@ export interface Sky {
 
 /**
  * How light becomes pixels, in 8-bit formats and windows of "light" only: float formats hold linear radiance, and other
- * views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation, tone map, the
- * sRGB curve or the colour map, dithering.
+ * views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette, white
+ * balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering.
  */
 export interface Film {
     /**
@@ -569,6 +569,61 @@ export interface Film {
      * @default 0
      */
     vignette: number;
+    /**
+     * Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
+     * frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
+     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
+     * @range 0 .. 1 EV
+     * @default 0
+     */
+    auto_exposure: number;
+    /**
+     * The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90.
+     * @range 0 .. 100
+     * @default 90
+     */
+    auto_percentile: number;
+    /**
+     * The luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18. Default 0.5.
+     * @range 0.001 .. 1000
+     * @default 0.5
+     */
+    auto_target: number;
+    /**
+     * The least that auto exposure adds, stops, -20 .. 20. Default -8.
+     * @range -20 .. 20 EV
+     * @default -8
+     */
+    auto_least_ev: number;
+    /**
+     * The most that auto exposure adds, stops, -20 .. 20. Default 8. If it is below auto_least_ev, this is what is
+     * added.
+     * @range -20 .. 20 EV
+     * @default 8
+     */
+    auto_most_ev: number;
+    /**
+     * 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
+     * context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
+     * time constant T it is 1 - exp(-t / T).
+     * @range 1e-6 .. 1
+     * @default 1
+     */
+    auto_adaptation: number;
+    /**
+     * Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+     * their structure stays. Default 0: off. Regions as for auto_exposure.
+     * @range 0 .. 1 EV
+     * @default 0
+     */
+    highlights: number;
+    /**
+     * Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
+     * black stays black. Default 0: off. Regions as for auto_exposure.
+     * @range 0 .. 1 EV
+     * @default 0
+     */
+    shadows: number;
 }
 
 /** How exactly to trace. */

@@ -286,6 +286,20 @@ class Context {
     /// bhr_prepare; without a value: windows of 1920 x 1080.
     Result<void> prepare(const std::optional<Image> &target = {}) { return set_or_none(bhr_prepare, target); }
 
+    /// bhr_begin_accumulation.
+    Result<void> begin_accumulation(std::uint32_t width, std::uint32_t height, ImageFlags flags = ImageFlags::none) {
+        return detail::call(
+            [&] { return bhr_begin_accumulation(get(), width, height, static_cast<std::uint32_t>(flags)); });
+    }
+    /// bhr_accumulate.
+    Result<void> accumulate(double weight = 1.0) {
+        return detail::call([&] { return bhr_accumulate(get(), weight); });
+    }
+    /// bhr_end_accumulation; without a value: forgets the frames.
+    Result<void> end_accumulation(const std::optional<Image> &target = {}) {
+        return set_or_none(bhr_end_accumulation, target);
+    }
+
     /// bhr_render_image_async.
     Result<Job> render_async(const Image &target) {
         const BhrImage image = target.c();

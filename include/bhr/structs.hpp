@@ -245,6 +245,25 @@ struct Film {
     /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     /// frame: at 1, light is a quarter there.
     double vignette;
+    /// Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target.
+    double auto_exposure;
+    /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100.
+    double auto_percentile;
+    /// The luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18.
+    double auto_target;
+    /// The least that auto exposure adds, stops, -20 .. 20.
+    double auto_least_ev;
+    /// The most that auto exposure adds, stops, -20 .. 20.
+    double auto_most_ev;
+    /// 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
+    /// context measured.
+    double auto_adaptation;
+    /// Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    /// their structure stays.
+    double highlights;
+    /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
+    /// black stays black.
+    double shadows;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

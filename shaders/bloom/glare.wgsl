@@ -5,6 +5,7 @@
 
 #import bloom/level
 #import shared/pass
+#requires fn as_metered(light: vec4<f32>, place: vec2<i32>) -> vec4<f32>
 
 // The number of pixels along a cell's side; it is even.
 override STEP: u32 = 2u;
@@ -20,5 +21,6 @@ fn tile_light(id: vec2<u32>) -> vec4<f32> {
     let between = (vec2<f32>(place) + 0.5) / f32(STEP) - 0.5;
     let inside = clamp(between, vec2<f32>(0.0), vec2<f32>(level.cells - 1u));
     let scattered = textureSampleLevel(glare, smooth_, (inside + 0.5) / vec2<f32>(textureDimensions(glare)), 0.0);
-    return vec4<f32>(level.own * light.xyz + level.above * scattered.xyz, light.w);
+    let glared = vec4<f32>(level.own * light.xyz + level.above * scattered.xyz, light.w);
+    return as_metered(glared, place);
 }

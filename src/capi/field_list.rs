@@ -207,6 +207,14 @@ unsafe impl Described for BhrFilm {
         Field { name: "shoulder_length", offset: offset_of!(BhrFilm, shoulder_length), kind: Kind::Numbers(1) },
         Field { name: "shoulder_angle", offset: offset_of!(BhrFilm, shoulder_angle), kind: Kind::Numbers(1) },
         Field { name: "vignette", offset: offset_of!(BhrFilm, vignette), kind: Kind::Numbers(1) },
+        Field { name: "auto_exposure", offset: offset_of!(BhrFilm, auto_exposure), kind: Kind::Numbers(1) },
+        Field { name: "auto_percentile", offset: offset_of!(BhrFilm, auto_percentile), kind: Kind::Numbers(1) },
+        Field { name: "auto_target", offset: offset_of!(BhrFilm, auto_target), kind: Kind::Numbers(1) },
+        Field { name: "auto_least_ev", offset: offset_of!(BhrFilm, auto_least_ev), kind: Kind::Numbers(1) },
+        Field { name: "auto_most_ev", offset: offset_of!(BhrFilm, auto_most_ev), kind: Kind::Numbers(1) },
+        Field { name: "auto_adaptation", offset: offset_of!(BhrFilm, auto_adaptation), kind: Kind::Numbers(1) },
+        Field { name: "highlights", offset: offset_of!(BhrFilm, highlights), kind: Kind::Numbers(1) },
+        Field { name: "shadows", offset: offset_of!(BhrFilm, shadows), kind: Kind::Numbers(1) },
     ];
 }
 

@@ -8,7 +8,7 @@ use super::pointer::{check_reserved, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
-use crate::scene::{ColourMap, Film, Filmic, Grade, ToneMap};
+use crate::scene::{AutoExposure, ColourMap, Film, Filmic, Grade, ToneMap};
 use std::mem::offset_of;
 
 /// The curve from light to pixels.
@@ -32,8 +32,8 @@ pub const BHR_COLOUR_MAP_NONE: BhrColourMap = 0;
 pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
-/// radiance, and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast,
-/// saturation, tone map, the sRGB curve or the colour map, dithering.
+/// radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
+/// vignette, white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -81,12 +81,36 @@ pub struct BhrFilm {
     /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     /// frame: at 1, light is a quarter there. Default 0. @since 0.2.0
     pub vignette: f64,
+    /// Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
+    /// frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
+    /// added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
+    pub auto_exposure: f64,
+    /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0
+    pub auto_percentile: f64,
+    /// The luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18. Default 0.5.
+    /// @since 0.2.0
+    pub auto_target: f64,
+    /// The least that auto exposure adds, stops, -20 .. 20. Default -8. @since 0.2.0
+    pub auto_least_ev: f64,
+    /// The most that auto exposure adds, stops, -20 .. 20. Default 8. If it is below auto_least_ev, this is what is
+    /// added. @since 0.2.0
+    pub auto_most_ev: f64,
+    /// 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
+    /// context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
+    /// time constant T it is 1 - exp(-t / T). @since 0.2.0
+    pub auto_adaptation: f64,
+    /// Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    /// their structure stays. Default 0: off. Regions as for auto_exposure. @since 0.2.0
+    pub highlights: f64,
+    /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
+    /// black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0
+    pub shadows: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 120];
+    const SIZES: &'static [usize] = &[24, 184];
     fn defaults() -> Self {
         Film::default().into()
     }
@@ -116,6 +140,14 @@ impl From<Film> for BhrFilm {
             shoulder_length: film.filmic.shoulder_length,
             shoulder_angle: film.filmic.shoulder_angle,
             vignette: film.grade.vignette,
+            auto_exposure: film.auto_exposure.strength,
+            auto_percentile: film.auto_exposure.percentile,
+            auto_target: film.auto_exposure.target,
+            auto_least_ev: film.auto_exposure.least_ev,
+            auto_most_ev: film.auto_exposure.most_ev,
+            auto_adaptation: film.auto_exposure.adaptation,
+            highlights: film.highlights,
+            shadows: film.shadows,
         }
     }
 }
@@ -154,8 +186,28 @@ impl TryFrom<BhrFilm> for Film {
             shoulder_length: given.shoulder_length,
             shoulder_angle: given.shoulder_angle,
         };
-        let film =
-            Self { tone_map, exposure_ev, bloom, beam_fwhm, colour_map, grade, filmic, glare_is_optional: false };
+        let auto_exposure = AutoExposure {
+            strength: given.auto_exposure,
+            percentile: given.auto_percentile,
+            target: given.auto_target,
+            least_ev: given.auto_least_ev,
+            most_ev: given.auto_most_ev,
+            adaptation: given.auto_adaptation,
+        };
+        let (highlights, shadows) = (given.highlights, given.shadows);
+        let film = Self {
+            tone_map,
+            exposure_ev,
+            bloom,
+            beam_fwhm,
+            colour_map,
+            grade,
+            filmic,
+            auto_exposure,
+            highlights,
+            shadows,
+            glare_is_optional: false,
+        };
         film.check()?;
         Ok(film)
     }

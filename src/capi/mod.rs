@@ -49,6 +49,7 @@ pub mod quality;
 pub mod rays;
 pub mod region;
 pub mod render;
+pub mod accumulation;
 pub mod sky;
 pub mod surface;
 pub mod view;

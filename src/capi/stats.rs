@@ -34,12 +34,14 @@ pub struct BhrFrameStats {
     pub device_bytes: u64,
     /// Lens tables made for this frame: 0 where those of an earlier one served, or none were needed. @since 0.2.0
     pub lens_tables: u64,
+    /// Stops that auto exposure (BhrFilm.auto_exposure) added to the film's exposure_ev; 0 without it. @since 0.2.0
+    pub auto_ev: f64,
 }
 
-// SAFETY: repr(C), size first, no padding, integers only.
+// SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFrameStats {
     const NAME: &'static str = "BhrFrameStats";
-    const SIZES: &'static [usize] = &[64, 72];
+    const SIZES: &'static [usize] = &[64, 80];
     fn defaults() -> Self {
         FrameStats::default().into()
     }
@@ -58,6 +60,7 @@ impl From<FrameStats> for BhrFrameStats {
             readback_ns: stats.readback_ns,
             device_bytes: stats.device_bytes,
             lens_tables: stats.lens_tables,
+            auto_ev: stats.auto_ev,
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::allocate::{collected, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::{Bloom, Glare};
+use crate::film::metering::{MeterParams, Metered};
 use crate::tracer::{Progress, Tile, TileSink};
 use rayon::prelude::*;
 
@@ -17,12 +18,22 @@ const LIGHT: &str = "the light of a tile";
 /// Bytes of a pixel's light.
 const LIGHT_BYTES: u64 = size_of::<[f32; 4]>() as u64;
 
+/// The stops that auto exposure added to the last metered frame; `None`: there was none.
+#[derive(Clone, Copy, Default)]
+pub struct Exposure {
+    /// The size of that frame's finest grid.
+    cells: [u32; 2],
+    pub stops: Option<f32>,
+}
+
 /// A frame on its way to the sink.
 pub struct Delivery<'a, 'b, 'c> {
     pool: &'a rayon::ThreadPool,
     frame: &'a Frame<'a>,
     sink: &'a mut TileSink<'b>,
     progress: &'a mut Progress<'c>,
+    /// The stops that auto exposure added to the last frame of this size, and then to this one.
+    pub exposure: Exposure,
     /// Parts of the frame's work.
     done: u64,
     total: u64,
@@ -36,8 +47,9 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         frame: &'a Frame<'a>,
         sink: &'a mut TileSink<'b>,
         progress: &'a mut Progress<'c>,
+        exposure: Exposure,
     ) -> Self {
-        Self { pool, frame, sink, progress, done: 0, total: 0, steps: 0 }
+        Self { pool, frame, sink, progress, exposure, done: 0, total: 0, steps: 0 }
     }
 
     /// Delivers a frame without bloom. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
@@ -51,9 +63,14 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         Ok(())
     }
 
-    /// Delivers a frame with bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the
-    /// sink; CANCELLED; OUT_OF_MEMORY.
-    pub fn with_glare(&mut self, tiles: &[Tile], bloom: &Bloom, keep: Option<bool>) -> Result<()> {
+    /// Delivers a frame with bloom, or one that is metered. `keep`: whether light is kept; `None`: as its size allows.
+    /// Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
+    pub fn with_glare(
+        &mut self,
+        tiles: &[Tile],
+        (bloom, meter): (&Bloom, Option<MeterParams>),
+        keep: Option<bool>,
+    ) -> Result<()> {
         let [width, height] = bloom.frame.map(|side| side as usize);
         let keep = keep.unwrap_or((width * height) as u64 * LIGHT_BYTES <= LIGHT_MEMORY);
         let samples = u64::from(self.frame.samples);
@@ -70,7 +87,12 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
             }
             self.tick()?;
         }
+        let cells = meter.map(|_| accumulator.cells()).transpose()?;
         let glare = self.pool.install(|| accumulator.spread())?;
+        let metered = match meter.zip(cells) {
+            Some((meter, cells)) => Some(self.metered(meter, &glare, &cells)?),
+            None => None,
+        };
         let film = self.frame.film.of_exposed();
         for tile in tiles {
             let light = match keep {
@@ -81,11 +103,20 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
                 }
                 false => self.exposed_light(*tile)?,
             };
-            let light = self.pool.install(|| with_glare(&glare, *tile, &light))?;
+            let light = self.pool.install(|| with_glare(&glare, metered.as_ref(), *tile, &light))?;
             self.deliver(*tile, &film, &light)?;
             self.tick()?;
         }
         Ok(())
+    }
+
+    /// Measures the frame, whose finest grid has these `cells`. Errors: OUT_OF_MEMORY.
+    fn metered(&mut self, meter: MeterParams, glare: &Glare<'_>, cells: &[[f32; 4]]) -> Result<Metered> {
+        let before = self.exposure.stops.filter(|_| self.exposure.cells == meter.cells);
+        let light = |cell: usize| glare.over_cell(cells.get(cell).copied().unwrap_or_default(), cell);
+        let metered = self.pool.install(|| Metered::new(meter, before, light))?;
+        self.exposure = Exposure { cells: meter.cells, stops: Some(metered.stops) };
+        Ok(metered)
     }
 
     /// Errors: CANCELLED; OUT_OF_MEMORY.
@@ -128,12 +159,13 @@ fn rows(tile: Tile, width: usize) -> impl Iterator<Item = std::ops::Range<usize>
 }
 
 /// Errors: OUT_OF_MEMORY.
-fn with_glare(glare: &Glare<'_>, tile: Tile, light: &[[f32; 4]]) -> Result<Vec<[f64; 4]>> {
+fn with_glare(glare: &Glare<'_>, metered: Option<&Metered>, tile: Tile, light: &[[f32; 4]]) -> Result<Vec<[f64; 4]>> {
     let mut with = with_room(light.len(), LIGHT)?;
     let place = |i: usize| (tile.x + i as u32 % tile.width, tile.y + i as u32 / tile.width);
     let pixel = |(i, light): (usize, &[f32; 4])| {
         let (x, y) = place(i);
-        glare.over(*light, x, y).map(f64::from)
+        let light = glare.over(*light, x, y);
+        metered.map_or(light, |metered| metered.over(light, x, y)).map(f64::from)
     };
     light.par_iter().enumerate().map(pixel).collect_into_vec(&mut with);
     Ok(with)

@@ -35,6 +35,8 @@ pub struct CpuTracer {
     output_lenses: Box<LensCache>,
     /// The tables of the last frame, kept from frame to frame.
     stars: Option<Arc<StarIndex>>,
+    /// That of the last frame that was metered.
+    exposure: delivery::Exposure,
 }
 
 /// The adapter as which the CPU tracer is listed.
@@ -70,7 +72,14 @@ impl CpuTracer {
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
         // Once all of them run, they have what threads take at their start, which is not ours to refuse.
         pool.broadcast(|_| ());
-        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default(), output_lenses: Box::default(), stars: None })
+        Ok(Self {
+            adapter: adapter_info(),
+            pool,
+            lenses: Box::default(),
+            output_lenses: Box::default(),
+            stars: None,
+            exposure: Default::default(),
+        })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {

@@ -8,6 +8,7 @@ use super::frame::Frame;
 use crate::allocate::{self, collected, filled};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
+use crate::film::metering::MeterParams;
 use crate::scene::Scene;
 use crate::scene::record::Record;
 use crate::tracer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
@@ -30,19 +31,27 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         allocate::check_room(0, "a frame")?;
-        let before = self.lenses.made;
-        let stats = self.with_frame(scene, request, |pool, frame| {
+        let before = (self.lenses.made, self.exposure);
+        let (stats, exposure) = self.with_frame(scene, request, |pool, frame| {
             let widest = if frame.half.is_some() { TILE_WIDTH_HALF } else { TILE_WIDTH };
             let tiles = tiles(request, frame.expected_steps(scene), widest)?;
-            let mut delivery = Delivery::new(pool, frame, sink, progress);
+            let mut delivery = Delivery::new(pool, frame, sink, progress, before.1);
+            let mut auto_stops = None;
             match Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())? {
                 None => delivery.plain(&tiles)?,
-                Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
+                Some(bloom) => {
+                    let meter = MeterParams::new(&scene.film, &bloom);
+                    delivery.with_glare(&tiles, (&bloom, meter), scene.quality.keep_light)?;
+                    auto_stops = meter.and(delivery.exposure.stops);
+                }
             }
             let rays = u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples);
-            Ok(FrameStats { rays, steps: delivery.steps, ..FrameStats::default() })
+            let auto_ev = auto_stops.map_or(0.0, f64::from);
+            let stats = FrameStats { rays, steps: delivery.steps, auto_ev, ..FrameStats::default() };
+            Ok((stats, delivery.exposure))
         })?;
-        Ok(FrameStats { lens_tables: self.lenses.made - before, ..stats })
+        self.exposure = exposure;
+        Ok(FrameStats { lens_tables: self.lenses.made - before.0, ..stats })
     }
 
     /// Sets a frame up, and keeps its sky and its lens for the next ones. Errors: as `Scene::lens`; OUT_OF_MEMORY;

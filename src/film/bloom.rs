@@ -179,9 +179,9 @@ fn weights(sigmas: &[f64]) -> (Vec<f64>, f64) {
 }
 
 impl Bloom {
-    /// Whether a frame of this kind has any, or a beam.
+    /// Whether a frame of this kind has any, or a beam, or has its light measured on the finest grid.
     pub fn is_shown(film: &Film, view: View, format: PixelFormat) -> bool {
-        (film.bloom > 0.0 || film.beam_fwhm > 0.0) && view == View::Light && format.is_developed()
+        (film.bloom > 0.0 || film.beam_fwhm > 0.0 || film.is_metered()) && view == View::Light && format.is_developed()
     }
 
     /// The bloom of a frame; `None`: it has none. `whole`: it is not a region of a larger one, whose glare nobody
@@ -218,7 +218,10 @@ impl Bloom {
         }
         let direct = 1.0 - scattered * (1.0 - narrow);
         let beam = (beam_fwhm > 0.0).then(|| Beam::new(beam_fwhm * height, factor, levels.len()));
-        let bloom = Self { frame, factor, direct: direct as f32, levels, beam };
+        let mut bloom = Self { frame, factor, direct: direct as f32, levels, beam };
+        if bloom.beam.is_none() && scattered == 0.0 {
+            bloom.levels.truncate(1);
+        }
         Ok(if bloom.beam.is_some() { bloom.through_beam(direct, scattered > 0.0) } else { bloom })
     }
 
@@ -343,6 +346,11 @@ impl<'a> BloomAccumulator<'a> {
         });
     }
 
+    /// The light of the finest grid's cells, once all tiles are in. Errors: OUT_OF_MEMORY.
+    pub fn cells(&self) -> Result<Vec<[f32; 4]>> {
+        collected(self.base.iter().copied(), GRIDS)
+    }
+
     /// Once all tiles are in: spreads their light. On the current pool. Errors: OUT_OF_MEMORY.
     pub fn spread(self) -> Result<Glare<'a>> {
         let Self { bloom, base } = self;
@@ -418,6 +426,13 @@ pub struct Glare<'a> {
 }
 
 impl Glare<'_> {
+    /// The mean light with its glare of a cell of the finest grid, by its number there and its own light.
+    pub fn over_cell(&self, own: [f32; 4], number: usize) -> [f32; 3] {
+        let above = self.bloom.weight_above(0);
+        let scattered = self.cells.get(number).copied().unwrap_or_default();
+        std::array::from_fn(|c| self.bloom.direct * own[c] + above * scattered[c])
+    }
+
     /// Pixel (x, y) of the frame with its glare, of its own exposed light; alpha as it was.
     pub fn over(&self, light: [f32; 4], x: u32, y: u32) -> [f32; 4] {
         let Some(base) = self.bloom.levels.first() else { return light };

@@ -11,6 +11,8 @@ pub(crate) mod tone_map;
 mod white_balance;
 pub(crate) mod grade;
 pub(crate) mod filmic;
+pub(crate) mod metering;
+pub(crate) mod whole;
 
 use crate::image::PixelFormat;
 use crate::scene::{ColourMap, Film, ToneMap, View};

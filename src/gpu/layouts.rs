@@ -2,7 +2,7 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::resources::{bloom_textures, occluder, sky_target};
+use super::frame::resources::{bloom_textures, meter_buffers, occluder, sky_target};
 use super::frame::uniforms::{bake, band, clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
@@ -19,6 +19,7 @@ fn shared() -> Vec<Layout> {
     let [scene, pass] = frame::layouts();
     let [given, start, end] = rays::layouts();
     let [level, beam] = bloom_textures::layouts();
+    let [meter, exposure] = meter_buffers::layouts();
     let [cloud, clouds] = clouds::layouts();
     let (matter, kerr, schwarzschild) = (matter::layout(), kerr::layout(), schwarzschild::layout());
     vec![
@@ -40,6 +41,8 @@ fn shared() -> Vec<Layout> {
         schwarzschild,
         level,
         beam,
+        meter,
+        exposure,
     ]
 }
 

@@ -7,6 +7,8 @@ use crate::error::{Error, Result, out_of_range};
 /// 2002).
 const COOLEST_WHITE: f64 = 1667.0;
 const HOTTEST_WHITE: f64 = 25000.0;
+/// The least `AutoExposure::adaptation`: that of frames a millisecond apart, with a time constant of 17 minutes.
+const SLOWEST_ADAPTATION: f64 = 1e-6;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -76,6 +78,28 @@ impl Default for Filmic {
     }
 }
 
+/// Exposure by a percentile of the frame's luminance: see `crate::film::metering`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AutoExposure {
+    /// The share of the stops to the target that is added, 0 off (default) .. 1.
+    pub strength: f64,
+    /// The percentile of the frame's luminance that is brought to the target, 0 .. 100. Default 90.
+    pub percentile: f64,
+    /// The luminance that the percentile is brought to, 0.001 .. 1000. Default 0.5.
+    pub target: f64,
+    /// The limits of what is added, in stops, -20 .. 20. Default -8 and 8. Where they cross, the upper one is added.
+    pub least_ev: f64,
+    pub most_ev: f64,
+    /// The share of the way from the last frame's exposure that a frame goes, above 0 .. 1. Default 1: all of it.
+    pub adaptation: f64,
+}
+
+impl Default for AutoExposure {
+    fn default() -> Self {
+        Self { strength: 0.0, percentile: 90.0, target: 0.5, least_ev: -8.0, most_ev: 8.0, adaptation: 1.0 }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Default `Aces`.
@@ -90,6 +114,12 @@ pub struct Film {
     pub colour_map: ColourMap,
     pub grade: Grade,
     pub filmic: Filmic,
+    pub auto_exposure: AutoExposure,
+    /// The share of their stops above middle grey that bright parts lose, 0 off (default) .. 1: see
+    /// `crate::film::metering`.
+    pub highlights: f64,
+    /// The share of their stops below middle grey that dark parts lose, 0 off (default) .. 1.
+    pub shadows: f64,
     /// Whether frames of a region, which cannot have glare, go without it; else they fail. True (default) until a host
     /// states a film of its own: those that never asked for glare are to get their tiles.
     pub glare_is_optional: bool,
@@ -105,15 +135,29 @@ impl Default for Film {
             colour_map: ColourMap::None,
             grade: Grade::default(),
             filmic: Filmic::default(),
+            auto_exposure: AutoExposure::default(),
+            highlights: 0.0,
+            shadows: 0.0,
             glare_is_optional: true,
         }
     }
 }
 
 impl Film {
+    /// Whether it asks for the light of the whole frame to be measured.
+    pub fn is_metered(&self) -> bool {
+        self.auto_exposure.strength > 0.0 || self.highlights > 0.0 || self.shadows > 0.0
+    }
+
+    /// The film without what the light of the whole frame goes into: glare, beam, auto exposure, local tone mapping.
+    pub fn of_parts(self) -> Self {
+        let auto_exposure = AutoExposure::default();
+        Self { bloom: 0.0, beam_fwhm: 0.0, auto_exposure, highlights: 0.0, shadows: 0.0, ..self }
+    }
+
     /// Errors: a number out of range.
     pub fn check(&self) -> Result<()> {
-        let (grade, filmic) = (&self.grade, &self.filmic);
+        let (grade, filmic, auto) = (&self.grade, &self.filmic, &self.auto_exposure);
         for (name, value, low, high) in [
             ("exposure_ev", self.exposure_ev, -20.0, 20.0),
             ("bloom", self.bloom, 0.0, 1.0),
@@ -127,6 +171,14 @@ impl Film {
             ("shoulder_length", filmic.shoulder_length, 0.0, 1.0),
             ("shoulder_angle", filmic.shoulder_angle, 0.0, 1.0),
             ("vignette", grade.vignette, 0.0, 1.0),
+            ("auto_exposure", auto.strength, 0.0, 1.0),
+            ("auto_percentile", auto.percentile, 0.0, 100.0),
+            ("auto_target", auto.target, 0.001, 1000.0),
+            ("auto_least_ev", auto.least_ev, -20.0, 20.0),
+            ("auto_most_ev", auto.most_ev, -20.0, 20.0),
+            ("auto_adaptation", auto.adaptation, SLOWEST_ADAPTATION, 1.0),
+            ("highlights", self.highlights, 0.0, 1.0),
+            ("shadows", self.shadows, 0.0, 1.0),
         ] {
             if !(low..=high).contains(&value) {
                 return Err(out_of_range(&format!("film {name}"), value, low, high));

@@ -144,7 +144,7 @@ impl Scene {
         scene.quality.samples_per_pixel = 1;
         scene.quality.refines = false;
         scene.quality.volume_resolution = VolumeResolution::Full;
-        (scene.film.bloom, scene.film.beam_fwhm) = (0.0, 0.0);
+        scene.film = scene.film.of_parts();
         scene.also_needs = outputs.iter().fold(Needs::default(), |needs, output| needs.and(output.needs()));
         scene
     }

@@ -9,7 +9,7 @@ use std::time::Duration;
 pub const PASSES: usize = 3;
 
 /// Numbers about the last finished frame. Times in nanoseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameStats {
     /// 1 for the first frame of a renderer; 0: none finished yet.
     pub frame_index: u64,
@@ -25,6 +25,8 @@ pub struct FrameStats {
     pub device_bytes: u64,
     /// Lens tables made for the frame.
     pub lens_tables: u64,
+    /// Stops that auto exposure added; 0 without it.
+    pub auto_ev: f64,
 }
 
 impl FrameStats {
@@ -37,6 +39,7 @@ impl FrameStats {
         self.readback_ns += part.readback_ns;
         self.device_bytes = self.device_bytes.max(part.device_bytes);
         self.lens_tables += part.lens_tables;
+        self.auto_ev += part.auto_ev;
     }
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-#include <stdlib.h>
 /* film.c -- the film: 8-bit images are exposed, bloom, and are mapped; float images are left alone; bloom needs the
  * whole frame, as a beam does; colour maps; grades. Numbers out of range are in bad_light.c. */
 #include "check.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define WIDTH 64u

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 
@@ -202,6 +203,18 @@ static void frames(const std::string &folder) {
     EXPECT(bhr_render_image(context.get(), &raw) == BHR_OK);
     EXPECT(std::memcmp(pixels.data(), frame.bytes().data(), pixels.size()) == 0);
     EXPECT(context.prepare(image));
+
+    // The mean of two frames of one scene is the frame.
+    std::vector<std::uint8_t> mean(pixels.size());
+    EXPECT(!context.accumulate() && !context.end_accumulation(bhr::Image(mean, WIDTH, HEIGHT)));
+    EXPECT(context.begin_accumulation(WIDTH, HEIGHT) && context.accumulate() && context.accumulate(2.0));
+    EXPECT(context.end_accumulation(bhr::Image(mean, WIDTH, HEIGHT)));
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < mean.size(); i++) {
+        off += std::abs(mean[i] - pixels[i]) > 1 ? 1 : 0;
+    }
+    EXPECT(off * 200 < mean.size());
+    EXPECT(context.begin_accumulation(WIDTH, HEIGHT, bhr::ImageFlags::transparent) && context.end_accumulation());
 
     // Beside the picture.
     bhr::Frame depth(WIDTH, HEIGHT, bhr::output_format(bhr::OutputKind::depth));

@@ -264,6 +264,14 @@ static void scene_call(BhrContext *context) {
         film.shoulder_length = number();
         film.shoulder_angle = number();
         film.vignette = number();
+        film.auto_exposure = number();
+        film.auto_percentile = number();
+        film.auto_target = number();
+        film.auto_least_ev = number();
+        film.auto_most_ev = number();
+        film.auto_adaptation = number();
+        film.highlights = number();
+        film.shadows = number();
         check(bhr_set_film(context, &film));
         break;
     case 8: check(bhr_set_time(context, number())); break;
@@ -442,7 +450,14 @@ static void render_call(BhrContext *context) {
     BhrImage  image = image_on(blocks[JOBS]);
     BhrRegion region = {.struct_size = mostly(sizeof region, byte())};
     size_t    i = byte() % JOBS;
-    switch (byte() % 9) {
+    switch (byte() % 10) {
+    case 9:
+        switch (byte() % 4) {
+        case 0: check(bhr_begin_accumulation(context, image.width, image.height, image.flags)); break;
+        case 1: frames += check(bhr_end_accumulation(context, byte() < 200 ? &image : NULL)) == BHR_OK; break;
+        default: frames += check(bhr_accumulate(context, byte() < 128 ? 1.0 : number())) == BHR_OK; break;
+        }
+        break;
     case 6:
     case 7: output_call(context, i); break;
     case 8:

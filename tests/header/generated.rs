@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 31] = [
+const SECTIONS: [(&str, &str); 32] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -31,6 +31,7 @@ const SECTIONS: [(&str, &str); 31] = [
     ("region", "parts of a larger frame"),
     ("scene", "scenes as text"),
     ("render", "rendering into memory"),
+    ("accumulation", "the mean of several frames"),
     ("job", "rendering in the background"),
     ("output", "outputs beside the picture"),
     ("occluder", "the host's things before the camera"),

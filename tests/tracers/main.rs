@@ -3,6 +3,7 @@
 //! against the other tracer. The GPU is whatever adapter comes first; without one the tests fail. One program, so that
 //! wgpu is linked once; tests that need a process of their own are in programs of their own.
 
+mod accumulation;
 mod bloom;
 mod cameras;
 mod composite;
@@ -22,6 +23,7 @@ mod lens;
 mod lensed;
 mod light;
 mod matter;
+mod metering;
 mod observers;
 mod occluder;
 mod outputs;

@@ -10,7 +10,7 @@ import operator
 import os
 import threading
 import weakref
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from types import TracebackType
 from typing import Any
 
@@ -463,6 +463,42 @@ class Context(SceneText, Tracing):
         frame, image = _target(width, height, format, transparent, out)
         with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_render_image(context, image))
+        return frame
+
+    def accumulate(
+        self,
+        moments: Iterable[float],
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        format: FormatLike | None = None,
+        transparent: bool = False,
+        out: Frame | npt.NDArray[Any] | None = None,
+    ) -> Frame:
+        """The mean of several frames, developed once, for motion blur or depth of field. `moments` sets the scene for
+        each frame before it yields the frame's weight, as a generator does:
+
+            def shutter():
+                for i in range(16):
+                    ctx.time = begin + i / 16 * span
+                    yield 1.0
+
+            frame = ctx.accumulate(shutter(), 1920, 1080)
+
+        The rest is as for `render`."""
+        frame, image = _target(width, height, format, transparent, out)
+        with self._gate as context:
+            check(lib.bhr_begin_accumulation(context, image.width, image.height, image.flags))
+        try:
+            for weight in moments:
+                with self._gate as context:
+                    check(lib.bhr_accumulate(context, weight))
+            with self._gate as context:
+                check(lib.bhr_end_accumulation(context, image))
+        except BaseException:
+            with self._gate as context:
+                lib.bhr_end_accumulation(context, ffi.NULL)
+            raise
         return frame
 
     def render_async(

@@ -262,8 +262,8 @@ class Sky(Struct):
 @dataclasses.dataclass(frozen=True)
 class Film(Struct):
     """How light becomes pixels, in 8-bit formats and windows of View.LIGHT only: float formats hold linear radiance,
-    and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation,
-    tone map, the sRGB curve or the colour map, dithering."""
+    and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette,
+    white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -307,6 +307,29 @@ class Film(Struct):
     #: 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     #: frame: at 1, light is a quarter there. Default 0.
     vignette: float = 0.0
+    #: Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
+    #: frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
+    #: added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
+    auto_exposure: float = 0.0
+    #: The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90.
+    auto_percentile: float = 90.0
+    #: The luminance that auto exposure brings the percentile to, 0.001 .. 1000; middle grey is 0.18. Default 0.5.
+    auto_target: float = 0.5
+    #: The least that auto exposure adds, stops, -20 .. 20. Default -8.
+    auto_least_ev: float = -8.0
+    #: The most that auto exposure adds, stops, -20 .. 20. Default 8. If it is below auto_least_ev, this is what is
+    #: added.
+    auto_most_ev: float = 8.0
+    #: 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
+    #: context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
+    #: time constant T it is 1 - exp(-t / T).
+    auto_adaptation: float = 1.0
+    #: Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    #: their structure stays. Default 0: off. Regions as for auto_exposure.
+    highlights: float = 0.0
+    #: Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
+    #: black stays black. Default 0: off. Regions as for auto_exposure.
+    shadows: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -441,6 +464,8 @@ class FrameStats(Struct):
     device_bytes: int
     #: Lens tables made for this frame: 0 where those of an earlier one served, or none were needed.
     lens_tables: int
+    #: Stops that auto exposure (BhrFilm.auto_exposure) added to the film's exposure_ev; 0 without it.
+    auto_ev: float
 
 
 @dataclasses.dataclass(frozen=True)

@@ -173,6 +173,9 @@ impl GpuTracer {
         if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
             self.buffers.bloom.prepare(&self.device, bloom, light)?;
         }
+        if let Some(meter) = &setup.meter {
+            self.buffers.meter.prepare(&self.device, meter)?;
+        }
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
         if let Some(beside) = &beside {

@@ -25,6 +25,8 @@ pub mod readers {
     pub const COLUMNS: u32 = 1 << 27;
     pub const NODES: u32 = 1 << 28;
     pub const FLAGS: u32 = 1 << 29;
+    /// Kernels that develop light which has been measured.
+    pub const METERED: u32 = 1 << 30;
     /// Kernels that go over records, by what they do with them; `RecordMaker` has the bit among the four of each.
     pub const SHADE: u32 = 0xf;
     pub const REFINE: u32 = 0xf0;
@@ -176,6 +178,7 @@ table! {
     // The bloom's cells, in pixels, of frames up to 16384 x 8192.
     STEP: [2, 4, 6, 8], GATHER | GLARE;
     GRID: FLAG, GATHER;
+    LOCAL: FLAG, METERED;
 }
 
 /// The value of a choice that the kernel asks the uniform for while it runs.

@@ -14,7 +14,7 @@ use crate::emit::{
     volumes,
 };
 use crate::film::bloom::BEAM_SHARES;
-use crate::film::{self, colour_map, grade, tone_map};
+use crate::film::{self, colour_map, grade, metering, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
@@ -308,6 +308,17 @@ fn all() -> Vec<(&'static str, String)> {
         TONE_MAP_AGX: u32 = ToneMap::Agx;
         TONE_MAP_FILMIC: u32 = ToneMap::Filmic;
         LEAST_BASE: f32 = grade::LEAST_BASE;
+        METER_DARKEST: f32 = metering::METER_DARKEST;
+        METER_BINS: u32 = metering::METER_BINS;
+        METER_BINS_PER_STOP: f32 = metering::METER_BINS_PER_STOP;
+        BLOCK_STOPS: u32 = metering::BLOCK_STOPS;
+        BLOCK_MIDDLE: f32 = metering::BLOCK_MIDDLE;
+        CELL_PARTS: f32 = metering::CELL_PARTS;
+        BLOCK_WEIGHT: f32 = metering::BLOCK_WEIGHT;
+        OWN_WEIGHT: f32 = metering::OWN_WEIGHT;
+        BLOCK_SHARES: vec3 = metering::BLOCK_SHARES;
+        STOP_SHARES: vec2 = metering::STOP_SHARES;
+        GREY_STOP: f32 = metering::GREY_STOP;
         COLOUR_MAP_NONE: u32 = ColourMap::None;
         LUMINANCE: vec3 = colour_map::LUMINANCE;
         BEAM_QUARTERS: i32 = BEAM_SHARES / 4;

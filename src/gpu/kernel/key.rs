@@ -5,12 +5,12 @@
 use super::choices::{Choice, Values, Variant, readers};
 use super::sizes::{LEVEL_COLUMNS, SKY_PARTS};
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, bake_slots, edge_slots,
-    output_slots, pixel_slots, refine_slots, sample_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, METER_BLOCKS, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, bake_slots,
+    edge_slots, output_slots, pixel_slots, refine_slots, sample_slots, shade_slots, sum_slots,
 };
 use super::variant::{
-    FilmVariant, GROUP, OutputPlaces, PixelTarget, RecordMaker, RecordSource, ShadeVariant, StoredFormat, TRACE_GROUP,
-    TraceVariant,
+    DevelopedLight, FilmVariant, GROUP, OutputPlaces, PixelTarget, RecordMaker, RecordSource, ShadeVariant,
+    StoredFormat, TRACE_GROUP, TraceVariant,
 };
 use super::wgsl;
 use crate::error::Result;
@@ -29,12 +29,15 @@ pub enum KernelKind {
     ShadeOnly(RecordMaker, PixelTarget),
     /// `None`: adds to a sum of samples.
     Refine(RecordMaker, Option<PixelTarget>),
-    /// Develops a sum of samples, or, with glare, light that has spread over a grid.
-    Develop(PixelTarget, bool),
+    Develop(PixelTarget, DevelopedLight),
     Gather,
     GatherBase,
     Upsample,
     Beam,
+    /// Metering: counts the cells of the finest grid, finds the exposure, smooths the counts.
+    Measure,
+    Expose,
+    Smooth,
     /// A level of the pyramid of a sky map that lies in a target; whether what it is made from is bound in parts.
     SkyLevel(bool),
     /// The distances of a target whose rows no copy takes.
@@ -92,9 +95,17 @@ impl KernelKey {
         Self::new(kind, &variants.into_iter().chain(film).collect::<Vec<_>>())
     }
 
-    /// `glare`: the side of the cells, in pixels, that light has spread over.
-    pub fn develop(film: FilmVariant, glare: Option<u32>) -> Self {
-        Self::new(KernelKind::Develop(film.target, glare.is_some()), &[&film, &[(Choice::STEP, glare.unwrap_or(0))]])
+    /// A sum of samples.
+    pub fn develop(film: FilmVariant) -> Self {
+        Self::new(KernelKind::Develop(film.target, DevelopedLight::Summed), &[&film])
+    }
+
+    /// Light that has spread over cells of `step` pixels along a side. `local`: it has been measured, and whether its
+    /// surroundings then change it.
+    pub fn develop_spread(film: FilmVariant, step: u32, local: Option<bool>) -> Self {
+        let light = if local.is_some() { DevelopedLight::Metered } else { DevelopedLight::Glare };
+        let choices = [(Choice::STEP, step), (Choice::LOCAL, local.unwrap_or(false).into())];
+        Self::new(KernelKind::Develop(film.target, light), &[&film, &choices])
     }
 
     /// `step`: finer cells, or pixels, along a cell's side; `grid`: whether they are cells.
@@ -129,8 +140,9 @@ impl KernelKind {
             Self::ShadeSample(maker) => SHADE & maker.readers(),
             Self::ShadeOnly(maker, target) => SHADE & maker.readers() | target.readers(),
             Self::Refine(maker, target) => REFINE & maker.readers() | target.map_or(0, PixelTarget::readers),
-            Self::Develop(target, false) => target.readers(),
-            Self::Develop(target, true) => target.readers() | GLARE,
+            Self::Develop(target, DevelopedLight::Summed) => target.readers(),
+            Self::Develop(target, DevelopedLight::Glare) => target.readers() | GLARE,
+            Self::Develop(target, DevelopedLight::Metered) => target.readers() | GLARE | METERED,
             Self::Gather => GATHER,
             Self::Export(maker) => EXPORT & maker.readers(),
             Self::Outputs(maker, _) => OUTPUTS & maker.readers(),
@@ -142,6 +154,9 @@ impl KernelKind {
             | Self::GatherBase
             | Self::Upsample
             | Self::Beam
+            | Self::Measure
+            | Self::Expose
+            | Self::Smooth
             | Self::SkyLevel(_)
             | Self::OccluderRows
             | Self::Bake => 0,
@@ -163,6 +178,9 @@ impl KernelKind {
             Self::Gather | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
+            Self::Measure => "measure",
+            Self::Expose => "expose",
+            Self::Smooth => "smooth_blocks",
             Self::SkyLevel(_) => "make_level",
             Self::OccluderRows => "take_distances",
             Self::Bake => "bake_texels",
@@ -185,11 +203,14 @@ impl KernelKind {
             Self::ShadeSample(maker) => wgsl::shade_sample(maker),
             Self::ShadeOnly(maker, target) => wgsl::shade_only(maker, target),
             Self::Refine(maker, target) => wgsl::refine(maker, target),
-            Self::Develop(target, glare) => wgsl::develop(target, glare),
+            Self::Develop(target, light) => wgsl::develop(target, light),
             Self::Gather => wgsl::kernel("bloom/gather"),
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
+            Self::Measure => wgsl::kernel("metering/measure"),
+            Self::Expose => wgsl::kernel("metering/expose"),
+            Self::Smooth => wgsl::kernel("metering/smooth"),
             Self::SkyLevel(in_parts) => wgsl::sky_level(in_parts),
             Self::OccluderRows => wgsl::kernel("emit/occluder_rows"),
             Self::Bake => wgsl::kernel("emit/bake"),
@@ -221,14 +242,23 @@ impl KernelKind {
                 let target = target.map_or_else(sum_slots, PixelTarget::slots);
                 vec![refine_slots(), sample_slots(source), target, edge_slots()]
             }
-            Self::Develop(target, glare) => {
-                let light = match glare {
-                    true => vec![Slot::Texture(LIGHT), Slot::Filtered(LIGHT), Slot::Sampler, Slot::Uniform],
-                    false => vec![Slot::Texture(RADIANCE)],
+            Self::Develop(target, light) => {
+                let spread = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT), Slot::Sampler, Slot::Uniform];
+                let metered = [Slot::Uniform, Slot::Read, Slot::Filtered(METER_BLOCKS), Slot::Sampler];
+                let light = match light {
+                    DevelopedLight::Summed => vec![Slot::Texture(RADIANCE)],
+                    DevelopedLight::Glare => spread.into(),
+                    DevelopedLight::Metered => [&spread[..], &metered].concat(),
                 };
                 vec![vec![Slot::UniformPart], light, target.slots()]
             }
             Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
+            Self::Measure => {
+                let [cells, glare] = [Slot::Texture(LIGHT); 2];
+                vec![vec![Slot::Uniform, cells, glare, Slot::Write, Slot::Write]]
+            }
+            Self::Expose => vec![vec![Slot::Uniform, Slot::Write, Slot::Write]],
+            Self::Smooth => vec![vec![Slot::Uniform, Slot::Read, Slot::TextureWrite(METER_BLOCKS)]],
             Self::SkyLevel(in_parts) => {
                 let first = vec![Slot::UniformPart, Slot::Read, Slot::Write];
                 vec![[first, vec![Slot::Read; if in_parts { SKY_PARTS - 1 } else { 0 }]].concat()]

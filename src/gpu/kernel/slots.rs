@@ -37,6 +37,10 @@ pub const RADIANCE: TextureKind =
 pub const LIGHT: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D2 };
 
+/// The blocks of metering: `smoothed` of the shaders.
+pub const METER_BLOCKS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D3 };
+
 /// Tables of a lens: a row for each branch; and columns, a layer for each branch.
 pub const LENS_ROWS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };

@@ -207,6 +207,17 @@ pub enum PixelTarget {
     Light,
 }
 
+/// The light that film/develop.wgsl develops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DevelopedLight {
+    /// A sum of samples.
+    Summed,
+    /// Light that has spread over a grid.
+    Glare,
+    /// Light that has spread over a grid, and has been measured.
+    Metered,
+}
+
 /// Formats of images that kernels write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StoredFormat {

@@ -3,7 +3,7 @@
 //! devices.
 
 use super::fragments::{join, join_with};
-use super::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
+use super::variant::{DevelopedLight, OutputPlace, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
 use crate::error::Result;
 use crate::scene::{RayOutput, RayOutputKind};
 
@@ -134,12 +134,17 @@ fn put_numbers(places: OutputPlaces) -> String {
     format!("{bindings}\n{head}{cases}        default: {{ }}\n    }}\n}}\n")
 }
 
-pub fn develop(target: PixelTarget, glare: bool) -> Result<String> {
+pub fn develop(target: PixelTarget, light: DevelopedLight) -> Result<String> {
     let driver = match target {
         PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => "film/develop",
         PixelTarget::Rows => "film/develop_rows",
     };
-    join(&[driver, if glare { "bloom/glare" } else { "film/summed" }, target.fragment()])
+    let light: &[_] = match light {
+        DevelopedLight::Summed => &["film/summed"],
+        DevelopedLight::Glare => &["bloom/glare", "metering/none"],
+        DevelopedLight::Metered => &["bloom/glare", "metering/metered"],
+    };
+    join(&[&[driver], light, &[target.fragment()]].concat())
 }
 
 /// A kernel of one fragment and what that imports.
@@ -180,16 +185,20 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("media from blocks", kernel("traced/fill")),
         ("count", kernel("traced/count")),
         ("present", kernel("window/present")),
-        ("develop", develop(PixelTarget::Packed, false)),
-        ("develop for a window", develop(PixelTarget::SCREEN, false)),
-        ("develop for an image of RGBA16F", develop(PixelTarget::Image(StoredFormat::Rgba16F), false)),
-        ("develop for an image of RGBA32F", develop(PixelTarget::Image(StoredFormat::Rgba32F), false)),
-        ("develop for an image of R32F", develop(PixelTarget::Image(StoredFormat::R32F), false)),
-        ("develop by rows", develop(PixelTarget::Rows, false)),
-        ("develop for bloom", develop(PixelTarget::Light, false)),
-        ("develop with glare", develop(PixelTarget::Packed, true)),
-        ("develop with glare for a window", develop(PixelTarget::SCREEN, true)),
-        ("develop with glare by rows", develop(PixelTarget::Rows, true)),
+        ("develop", develop(PixelTarget::Packed, DevelopedLight::Summed)),
+        ("develop for a window", develop(PixelTarget::SCREEN, DevelopedLight::Summed)),
+        ("develop for an image of RGBA16F", develop(PixelTarget::Image(StoredFormat::Rgba16F), DevelopedLight::Summed)),
+        ("develop for an image of RGBA32F", develop(PixelTarget::Image(StoredFormat::Rgba32F), DevelopedLight::Summed)),
+        ("develop for an image of R32F", develop(PixelTarget::Image(StoredFormat::R32F), DevelopedLight::Summed)),
+        ("develop by rows", develop(PixelTarget::Rows, DevelopedLight::Summed)),
+        ("develop for bloom", develop(PixelTarget::Light, DevelopedLight::Summed)),
+        ("develop with glare", develop(PixelTarget::Packed, DevelopedLight::Glare)),
+        ("develop with glare for a window", develop(PixelTarget::SCREEN, DevelopedLight::Glare)),
+        ("develop with glare by rows", develop(PixelTarget::Rows, DevelopedLight::Glare)),
+        ("develop metered light", develop(PixelTarget::Packed, DevelopedLight::Metered)),
+        ("metering, measure", kernel("metering/measure")),
+        ("metering, expose", kernel("metering/expose")),
+        ("metering, smooth", kernel("metering/smooth")),
         ("bloom, gather", kernel("bloom/gather")),
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),

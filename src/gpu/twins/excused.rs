@@ -36,6 +36,11 @@ const BLOOM: Why = Tested(
     "gpu_and_cpu_pictures_agree",
     "pictures with bloom of both tracers: the grids exist only as whole textures",
 );
+const METERED: Why = Tested(
+    "tests/tracers/metering.rs",
+    "gpu_and_cpu_pictures_agree",
+    "metered pictures of both tracers, and the stops that they add: counts and blocks exist for whole frames only",
+);
 const VOLUMES: Why = Tested(
     "tests/tracers/volumes.rs",
     "the_tracers_agree",
@@ -84,6 +89,11 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/gather", "kernel coverage tap_weight between gathered_within gather", BLOOM),
     ("bloom/glare", "tile_light", BLOOM),
     ("bloom/upsample", "between upsample", BLOOM),
+    ("metering/measure", "count_cell measure", METERED),
+    ("metering/expose", "expose", METERED),
+    ("metering/smooth", "smooth_blocks", METERED),
+    ("metering/metered", "base_at as_metered", METERED),
+    ("metering/none", "as_metered", Plumbing("it leaves light as it is")),
     ("emit/disk", "disk_at_crossing disk_opacity", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/shape", "has_shape", Plumbing("it asks what a kernel was compiled for")),
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),

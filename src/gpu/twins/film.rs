@@ -3,6 +3,7 @@
 
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
+use crate::film::metering::{self, MeterParams};
 use crate::film::{
     FilmParams, colour_map, develop, dither, false_colour, filmic, grade, limited, srgb_encode, tone_map,
 };
@@ -10,6 +11,7 @@ use crate::gpu::kernel::choices::FROM_UNIFORM;
 use crate::image::PixelFormat;
 use crate::image::file::srgb_to_linear;
 use crate::scene::{ColourMap, Film, Filmic, Grade, ToneMap, View};
+use bytemuck::Zeroable;
 
 const HEAD: &str = "
 #import film/film
@@ -19,12 +21,19 @@ const HEAD: &str = "
 #import film/filmic
 #import film/grade
 #import film/params
+#import metering/params
+#import metering/stops
 #import window/present
 var<private> film: FilmParams;
+var<private> meter: MeterParams;
 fn enter_film() {
     film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u), word(8u), in1(9u),
         in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in4(28u), in4(32u),
         in4(36u));
+}
+fn enter_meter() {
+    meter = MeterParams(vec2<u32>(1u), vec2<u32>(1u), 1u, 1.0, 0.0, in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u),
+        in1(6u), in1(7u), 1.0);
 }
 fn out_bytes(words: vec4<u32>, count: u32) {
     for (var k = 0u; k < count; k += 1u) {
@@ -123,6 +132,11 @@ fn push_value(i: &mut Inputs) {
     };
     let is_nan = i.random.below(50) == 0;
     i.push(if is_nan { f64::NAN } else { value });
+}
+
+fn meter_of(i: &Inputs) -> MeterParams {
+    let [strength, percentile, aim, least, most, adaptation, highlights, shadows] = std::array::from_fn(|k| i.f(k));
+    MeterParams { strength, percentile, aim, least, most, adaptation, highlights, shadows, ..MeterParams::zeroed() }
 }
 
 pub fn group() -> Group {
@@ -274,6 +288,33 @@ pub fn group() -> Group {
             },
             // A twentieth of a step of 8 bits: sin and cos are the driver's.
             2e-4,
+        ),
+        twin(
+            "metering/stops",
+            "stop_of",
+            "out1(stop_of(in3(0u)));",
+            rgb,
+            |i, o| o.all([f64::from(metering::stop_of(f3(i)))], 16.0),
+            TRANSCENDENTAL,
+        ),
+        twin(
+            "metering/stops",
+            "wanted_stops local_stops smooth_above",
+            "enter_meter(); out3(vec3<f32>(wanted_stops(in1(8u)), local_stops(in1(9u)), smooth_above(in1(9u))));",
+            |i| {
+                let ranges = [(0.0, 1.0), (0.0, 1.0), (-10.0, 10.0), (-20.0, 0.0), (0.0, 20.0), (0.0, 1.0), (0.0, 1.0)];
+                for (low, high) in ranges.into_iter().chain([(0.0, 1.0), (0.0, 32.0), (-16.0, 16.0)]) {
+                    i.even(low, high);
+                }
+            },
+            |i, o| {
+                let meter = meter_of(i);
+                let (stop, stops) = (i.f(8), i.f(9));
+                let wanted = metering::wanted_stops(&meter, stop);
+                let local = metering::local_stops(&meter, stops);
+                put3(o, [wanted, local, metering::smooth_above(stops)]);
+            },
+            ROUNDING,
         ),
         twin(
             "window/present",

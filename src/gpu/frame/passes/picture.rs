@@ -3,6 +3,7 @@
 //! them. Knows no submissions.
 
 use super::bloom::BloomStages;
+use super::metering::MeterStages;
 use super::refine::RefineStage;
 use crate::error::{Error, Result};
 use crate::gpu::device::wgpu_device::Device;
@@ -70,6 +71,8 @@ pub struct Stages {
 /// The stages that spread light and turn it into pixels.
 pub struct GlareStages {
     pub bloom: BloomStages,
+    /// `None`: the frame is not metered.
+    pub meter: Option<MeterStages>,
     pub develop: Stage,
     pub output: PixelOutput,
 }
@@ -171,7 +174,7 @@ impl FrameBuffers {
             })
         };
         let writer = match variants.several_samples {
-            true => kernels.get(KernelKey::develop(variants.film, None))?,
+            true => kernels.get(KernelKey::develop(variants.film))?,
             false => kernels.get(KernelKey::shade_only(setup.record_setup.source, variants.shade, variants.film))?,
         };
         let shading = if variants.several_samples {
@@ -207,10 +210,18 @@ impl FrameBuffers {
         };
         let (output, glare) = match (&setup.bloom, variants.developed) {
             (Some(bloom), Some(developed)) => {
-                let develops = kernels.get(KernelKey::develop(developed, Some(bloom.factor)))?;
+                let develops = kernels.get(setup.develop_key(developed, bloom))?;
+                let mut light = Vec::from(self.bloom.group(bloom)?);
+                let made = (&self.meter, &self.bloom, bloom);
+                let meter = setup.meter.as_ref().map(|meter| MeterStages::new(device, kernels, meter, made));
+                if setup.meter.is_some() {
+                    light.extend(self.meter.group()?);
+                    light.push(self.bloom.resources()?.smooth());
+                }
                 let glare = GlareStages {
                     bloom: self.bloom.stages(device, kernels, bloom)?,
-                    develop: develops.stage(device, &[slice::from_ref(&pass), &self.bloom.group(bloom)?])?,
+                    meter: meter.transpose()?,
+                    develop: develops.stage(device, &[slice::from_ref(&pass), &light])?,
                     output: pixel_output(&develops, &fixed.film_of_exposed)?,
                 };
                 (PixelOutput::Fixed(group(&writer, &fixed.film, self.bloom.light()?)?), Some(glare))

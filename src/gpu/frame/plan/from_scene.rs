@@ -9,6 +9,7 @@ use crate::emit::grid::GRID_LAST;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
+use crate::film::metering::MeterParams;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::gpu::frame::uniforms::matter::{matter_variant, places_of};
@@ -59,6 +60,7 @@ impl Planner<'_> {
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent)
             .over_frame(request.region.full_width, request.region.full_height);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())?;
+        let meter = bloom.as_ref().and_then(|bloom| MeterParams::new(&scene.film, bloom));
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
@@ -100,7 +102,7 @@ impl Planner<'_> {
         let structure = self.structure(&emitters, scene.hole.spin, &lens);
         let clouds = structure.iter().any(Option::is_some).then(|| CloudsUniform::new(&structure));
         let places = places_of(&emitters.volumes)?;
-        Ok(Setup { record_setup, variants, samples, uniform, clouds, structure, places, film, bloom })
+        Ok(Setup { record_setup, variants, samples, uniform, clouds, structure, places, film, bloom, meter })
     }
 
     /// The key of the structure of each volume, as far as the device's textures hold it.

@@ -4,8 +4,9 @@
 
 use super::setup::Setup;
 use crate::film::bloom::Bloom;
+use crate::film::metering::MeterParams;
 use crate::gpu::kernel::key::{KernelKey, KernelKind};
-use crate::gpu::kernel::variant::OutputPlaces;
+use crate::gpu::kernel::variant::{FilmVariant, OutputPlaces};
 
 impl Setup {
     /// The kernels that make records, or the tables that they are looked up in, and the structure of matter.
@@ -31,13 +32,19 @@ impl Setup {
             keys.push(KernelKey::refine(samples, variants.shade, film));
         }
         if film.is_none() {
-            keys.push(KernelKey::develop(variants.film, None));
+            keys.push(KernelKey::develop(variants.film));
         }
         if let (Some(bloom), Some(developed)) = (&self.bloom, variants.developed) {
             keys.extend(bloom_kernels(bloom));
-            keys.push(KernelKey::develop(developed, Some(bloom.factor)));
+            keys.extend(self.meter.iter().flat_map(meter_kernels));
+            keys.push(self.develop_key(developed, bloom));
         }
         keys
+    }
+
+    /// The kernel that develops light which has spread.
+    pub(in crate::gpu) fn develop_key(&self, film: FilmVariant, bloom: &Bloom) -> KernelKey {
+        KernelKey::develop_spread(film, bloom.factor, self.meter.as_ref().map(MeterParams::is_local))
     }
 
     /// Every kernel of outputs.
@@ -57,6 +64,12 @@ fn bloom_kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
     let gather = (0..count).map(|index| gather_key(bloom, index));
     let beam = bloom.beam.as_ref().map(|_| KernelKind::Beam.into());
     gather.chain((1 < count).then(|| KernelKind::Upsample.into())).chain(beam)
+}
+
+/// The kernels that measure light.
+fn meter_kernels(meter: &MeterParams) -> impl Iterator<Item = KernelKey> {
+    let smooth = meter.is_local().then_some(KernelKind::Smooth);
+    [KernelKind::Measure, KernelKind::Expose].into_iter().chain(smooth).map(KernelKey::from)
 }
 
 /// The kernel that gathers light into the grid of a level.

@@ -7,6 +7,7 @@ use crate::emit::baking::BakeKey;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
+use crate::film::metering::MeterParams;
 use crate::gpu::device::target::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::frame::uniforms::clouds::CloudsUniform;
@@ -74,4 +75,6 @@ pub(in crate::gpu) struct Setup {
     pub(in crate::gpu) places: Vec<[f32; 4]>,
     pub(in crate::gpu) film: FilmParams,
     pub(in crate::gpu) bloom: Option<Bloom>,
+    /// In frames with bloom: how they are metered, if they are.
+    pub(in crate::gpu) meter: Option<MeterParams>,
 }

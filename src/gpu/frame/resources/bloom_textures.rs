@@ -113,6 +113,12 @@ impl BloomResources {
             && self.beam.as_ref().map(|beam| beam.rows.size()) == beam_size(bloom)
     }
 
+    /// The light that the finest grid spreads.
+    fn glare(&self, bloom: &Bloom) -> Result<&Texture> {
+        let grids = if bloom.levels.len() > 1 { &self.spread } else { &self.gathered };
+        grids.first().ok_or_else(|| Error::internal("bloom without a grid"))
+    }
+
     pub fn smooth(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Sampler(&self.smooth)
     }
@@ -186,12 +192,17 @@ impl BloomBuffers {
         Ok(view(&self.resources()?.light))
     }
 
-    /// Group 1 of development.
+    /// The mean light of the finest grid's cells, and what spreads from there; both once all light is there.
+    pub fn cells(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 2]> {
+        let resources = self.resources()?;
+        let gathered = resources.gathered.first().ok_or_else(|| Error::internal("bloom without a grid"))?;
+        Ok([view(gathered), view(resources.glare(bloom)?)])
+    }
+
+    /// The begin of group 1 of development.
     pub fn group(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 4]> {
         let resources = self.resources()?;
-        let grids = if bloom.levels.len() > 1 { &resources.spread } else { &resources.gathered };
-        let glare = grids.first().ok_or_else(|| Error::internal("bloom without a grid"))?;
-        Ok([view(&resources.light), view(glare), resources.smooth(), resources.level()])
+        Ok([view(&resources.light), view(resources.glare(bloom)?), resources.smooth(), resources.level()])
     }
 }
 

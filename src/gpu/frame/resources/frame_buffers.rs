@@ -4,6 +4,7 @@
 use super::bloom_textures::BloomBuffers;
 use super::cached_uniform::CachedUniform;
 use super::edge_list::EdgeList;
+use super::meter_buffers::MeterBuffers;
 use super::staging_layout::MOST_PASSES;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
@@ -26,6 +27,7 @@ pub struct FrameBuffers {
     pub fixed: Option<FixedBuffers>,
     pub sized: Option<SizedBuffers>,
     pub bloom: BloomBuffers,
+    pub meter: MeterBuffers,
     pub record_store: RecordStore,
     pub edges: EdgeList,
     pub readback: Readback,
@@ -148,6 +150,7 @@ impl FrameBuffers {
     pub fn forget(&mut self) {
         self.record_store.forget();
         self.bloom.forget();
+        self.meter.forget();
         if let Some(fixed) = &mut self.fixed {
             let FixedBuffers { frame, clouds, film, film_of_exposed, passes, .. } = fixed;
             for written in [frame, clouds, film, film_of_exposed, passes] {

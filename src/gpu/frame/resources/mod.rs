@@ -12,6 +12,7 @@ pub(in crate::gpu) mod ray_buffers;
 pub(in crate::gpu) mod sky_texture;
 pub(in crate::gpu) mod streaks;
 pub(in crate::gpu) mod bloom_textures;
+pub(in crate::gpu) mod meter_buffers;
 pub(in crate::gpu) mod occluder;
 pub(in crate::gpu) mod sky_target;
 pub(in crate::gpu) mod frame_buffers;

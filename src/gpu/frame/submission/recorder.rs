@@ -12,7 +12,7 @@ use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::plan::steps::Step;
 use crate::gpu::frame::resources::frame_buffers::SizedBuffers;
-use crate::gpu::frame::resources::staging_layout::{MOST_PASSES, PIXELS, STEPS, TICKS};
+use crate::gpu::frame::resources::staging_layout::{AUTO_STOPS, MOST_PASSES, PIXELS, STEPS, STOPS_BYTES, TICKS};
 use crate::gpu::frame::uniforms::frame::PassUniform;
 use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::STEP_SUM;
@@ -45,6 +45,8 @@ pub struct Recorded {
     /// Whether steps were counted, of the picture and of outputs: none are taken where rays are looked up and nothing
     /// else.
     pub counts: [bool; 2],
+    /// Whether the stops that auto exposure adds are there.
+    pub metered: bool,
 }
 
 impl<'a> Recorder<'a> {
@@ -102,8 +104,13 @@ impl<'a> Recorder<'a> {
                 glare.bloom.gather(pass, cells);
                 if step.spreads {
                     glare.bloom.spread(pass);
+                    glare.meter.iter().for_each(|meter| meter.measure(pass));
                 }
             });
+            if let Some(meter) = glare.meter.as_ref().filter(|_| step.spreads) {
+                self.encoder.copy_buffer_to_buffer(&meter.exposure, 0, self.to, AUTO_STOPS, STOPS_BYTES);
+                self.recorded.metered = true;
+            }
         }
         if let Some(tile) = step.develops {
             let output = glare.output.group(device, self.to, tile)?;

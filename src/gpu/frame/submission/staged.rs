@@ -4,7 +4,7 @@
 use super::begun_frame::BegunFrame;
 use super::delivery::Delivery;
 use crate::gpu::frame::plan::steps::Step;
-use crate::gpu::frame::resources::staging_layout::{PIXELS, STEPS_END};
+use crate::gpu::frame::resources::staging_layout::{NUMBERS_END, PIXELS};
 use crate::scene::output::MOST_OUTPUTS;
 use crate::tracer::Tile;
 use arrayvec::ArrayVec;
@@ -42,7 +42,7 @@ impl Staged {
         let tile = step.develops.filter(|_| matches!(frame.delivery, Delivery::Host));
         let row_bytes = tile.map_or(0, |tile| tile.width as usize * frame.request.format.bytes_per_pixel());
         let pixel_bytes = tile.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
-        let mut size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS_END };
+        let mut size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { NUMBERS_END };
         let mut numbers = ArrayVec::new();
         for packed in frame.beside_of(step).iter().flat_map(|beside| beside.packed()) {
             let (tile, begin) = (step.shades, size.next_multiple_of(PIXELS));

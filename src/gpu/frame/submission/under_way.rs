@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::frame::resources::staging_layout::{PIXELS, STEPS, TICKS};
+use crate::gpu::frame::resources::staging_layout::{AUTO_STOPS, PIXELS, STEPS, STOPS_BYTES, TICKS};
 use crate::gpu::lens::records::STEP_SUM;
 use crate::tracer::{FrameStats, Tile, TileSink};
 use std::time::Instant;
@@ -62,6 +62,10 @@ impl Submission {
         for (_, begin) in recorded.counts.into_iter().zip(STEPS).filter(|(counts, _)| *counts) {
             let steps = bytemuck::try_pod_read_unaligned::<u32>(part(&head, begin, STEP_SUM)?);
             stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+        }
+        if recorded.metered {
+            let stops = bytemuck::try_pod_read_unaligned::<f32>(part(&head, AUTO_STOPS, STOPS_BYTES)?);
+            stats.auto_ev += f64::from(stops.map_err(|e| Error::internal(format!("auto exposure: {e}")))?);
         }
         let ticks = part(&head, TICKS, recorded.tick_bytes)?;
         stats.gpu_ns += timer::nanoseconds(device, ticks)?;

@@ -2,7 +2,7 @@
 //! The table of choices against the WGSL that kernels are made of, and the number of kernels that can exist.
 
 use super::super::choices::{Choice, Only, Row, TABLE, Values, Variant, readers::*};
-use super::super::variant::{OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
+use super::super::variant::{DevelopedLight, OutputPlaces, PixelTarget, RecordMaker, StoredFormat};
 use super::super::wgsl::shader_sources;
 use super::KernelKind;
 use crate::gpu::device::specialise::Parsed;
@@ -60,8 +60,10 @@ pub(super) fn kinds() -> Vec<KernelKind> {
             kinds.extend((refined && scattered(target)).then_some(Refine(maker, Some(*target))));
         }
     }
-    kinds.extend(targets.iter().map(|target| Develop(*target, false)));
-    kinds.extend(targets.iter().filter(|target| **target != PixelTarget::Light).map(|target| Develop(*target, true)));
+    kinds.extend(targets.iter().map(|target| Develop(*target, DevelopedLight::Summed)));
+    for light in [DevelopedLight::Glare, DevelopedLight::Metered] {
+        kinds.extend(targets.iter().filter(|t| **t != PixelTarget::Light).map(|target| Develop(*target, light)));
+    }
     kinds
 }
 
@@ -175,7 +177,8 @@ fn is_example(kind: KernelKind) -> bool {
     use KernelKind::*;
     match kind {
         ShadeOnly(RecordMaker::Schwarzschild, PixelTarget::Packed) | ShadeSample(RecordMaker::KerrDeferred) => true,
-        Refine(RecordMaker::Traced, Some(PixelTarget::SCREEN)) | Develop(PixelTarget::Packed, true) => true,
+        Refine(RecordMaker::Traced, Some(PixelTarget::SCREEN))
+        | Develop(PixelTarget::Packed, DevelopedLight::Metered) => true,
         Export(maker) | Outputs(maker, _) => maker == RecordMaker::Schwarzschild,
         ShadeSample(_) | ShadeOnly(..) | Refine(..) | Develop(..) | Blocks | Listed => false,
         _ => true,

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Kernel: smooths the counts of blocks across blocks and stops, into weights and weights times stops, in a workgroup
+// for each block with a thread for each stop.
+
+#import constants
+#import metering/params
+
+@group(0) @binding(0) var<uniform> meter: MeterParams;
+@group(0) @binding(1) var<storage, read> counts: array<u32>;
+@group(0) @binding(2) var smoothed: texture_storage_3d<rgba16float, write>;
+
+var<workgroup> sums: array<f32, BLOCK_STOPS>;
+
+@compute @workgroup_size(BLOCK_STOPS)
+fn smooth_blocks(@builtin(workgroup_id) block: vec3<u32>, @builtin(local_invocation_index) stop: u32) {
+    // A table that is indexed has to be a variable.
+    var shares = BLOCK_SHARES;
+    var sum = 0.0;
+    for (var dy = -2; dy <= 2; dy += 1) {
+        for (var dx = -2; dx <= 2; dx += 1) {
+            let place = vec2<i32>(block.xy) + vec2<i32>(dx, dy);
+            if all(place >= vec2<i32>(0)) && all(place < vec2<i32>(meter.blocks)) {
+                let count = counts[(u32(place.y) * meter.blocks.x + u32(place.x)) * BLOCK_STOPS + stop];
+                sum += shares[abs(dy)] * shares[abs(dx)] * f32(count);
+            }
+        }
+    }
+    sums[stop] = sum;
+    workgroupBarrier();
+    let scale = BLOCK_WEIGHT / (CELL_PARTS * f32(meter.side * meter.side));
+    let middle = scale * STOP_SHARES.x * sum;
+    var weight = middle;
+    var stops = middle * (f32(stop) - BLOCK_MIDDLE);
+    if stop > 0u {
+        let beside = scale * STOP_SHARES.y * sums[stop - 1u];
+        weight += beside;
+        stops += beside * (f32(stop) - 1.0 - BLOCK_MIDDLE);
+    }
+    if stop + 1u < BLOCK_STOPS {
+        let beside = scale * STOP_SHARES.y * sums[stop + 1u];
+        weight += beside;
+        stops += beside * (f32(stop) + 1.0 - BLOCK_MIDDLE);
+    }
+    textureStore(smoothed, vec3<u32>(block.xy, stop), vec4<f32>(weight, stops, 0.0, 0.0));
+}

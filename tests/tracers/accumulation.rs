@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Accumulated frames: the mean of several frames' light, developed as one frame is. The GPU is whatever adapter comes
+//! first; without one the tests fail.
+
+use crate::frames::{both, picture};
+use bhr::error::{ErrorKind, Result};
+use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::renderer::Renderer;
+use bhr::scene::{AutoExposure, Disk, Film, Scene};
+
+type Change = fn(&mut Scene);
+
+const SIZE: [u32; 2] = [160, 90];
+
+fn end(renderer: &mut Renderer, format: PixelFormat, [width, height]: [u32; 2], transparent: bool) -> Result<Vec<u8>> {
+    let mut pixels = vec![0; (width * height) as usize * format.bytes_per_pixel()];
+    let mut image = ImageMut::new(Layout::packed(format, width, height), &mut pixels).unwrap();
+    renderer.end_accumulation(&mut image, transparent).map(|()| pixels)
+}
+
+/// The mean of frames whose times go evenly over a span.
+fn blurred(renderer: &mut Renderer, samples: u32, span: f64, format: PixelFormat) -> Vec<u8> {
+    let begin = renderer.scene.time;
+    renderer.begin_accumulation(SIZE, false).unwrap();
+    for sample in 0..samples {
+        renderer.scene.time = begin + span * (f64::from(sample) + 0.5) / f64::from(samples);
+        renderer.accumulate(1.0, &mut |_| true).unwrap();
+    }
+    renderer.scene.time = begin;
+    end(renderer, format, SIZE, false).unwrap()
+}
+
+/// One frame, or the same one several times and with any weight, is the frame as it is rendered at once.
+#[test]
+fn equal_frames_are_the_frame() {
+    let films: [(&str, Change); 4] = [
+        ("glare", |_| ()),
+        ("no glare", |s| s.film.bloom = 0.0),
+        ("metered", |s| {
+            s.film.auto_exposure = AutoExposure { strength: 1.0, ..AutoExposure::default() };
+            (s.film.highlights, s.film.grade.vignette) = (0.5, 0.7);
+        }),
+        ("a beam", |s| (s.film.bloom, s.film.beam_fwhm) = (0.0, 0.1)),
+    ];
+    for (tracer, mut renderer) in both() {
+        for (name, set) in films {
+            renderer.scene.film = Film::default();
+            set(&mut renderer.scene);
+            for transparent in [false, true] {
+                let at_once = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, transparent);
+                let at_once_ev = renderer.stats().auto_ev;
+                renderer.begin_accumulation(SIZE, transparent).unwrap();
+                for weight in [1.0, 0.25, 3.0] {
+                    renderer.accumulate(weight, &mut |_| true).unwrap();
+                }
+                let added = end(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, transparent).unwrap();
+                let off = at_once.iter().zip(&added).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+                assert!(off * 1000 <= added.len(), "{tracer}, {name}, {transparent}: {off} bytes differ");
+                assert!((renderer.stats().auto_ev - at_once_ev).abs() < 0.02, "{tracer}, {name}");
+            }
+        }
+        renderer.begin_accumulation(SIZE, false).unwrap();
+        renderer.accumulate(0.3, &mut |_| true).unwrap();
+        let floats = end(&mut renderer, PixelFormat::Rgba16F, SIZE, false).unwrap();
+        let at_once = picture(&mut renderer, PixelFormat::Rgba16F, SIZE, None, false);
+        let codes = |bytes: &[u8]| bytes.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b)).collect::<Vec<_>>();
+        let off = codes(&floats).into_iter().zip(codes(&at_once)).filter(|(a, b)| a.abs_diff(*b) > 1).count();
+        assert_eq!(off, 0, "{tracer}: halves differ");
+    }
+}
+
+/// The light of a mean is the mean of the lights, by their weights.
+#[test]
+fn light_is_the_weighted_mean() {
+    let floats =
+        |bytes: &[u8]| bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect::<Vec<_>>();
+    for (tracer, mut renderer) in both() {
+        renderer.scene.disk = Some(Disk { turbulence: 1.0, ..Disk::default() });
+        let light = |renderer: &mut Renderer, time: f64| {
+            renderer.scene.time = time;
+            floats(&picture(renderer, PixelFormat::Rgba32F, SIZE, None, false))
+        };
+        let (one, other) = (light(&mut renderer, 0.0), light(&mut renderer, 40.0));
+        renderer.begin_accumulation(SIZE, false).unwrap();
+        for (time, weight) in [(0.0, 3.0), (40.0, 1.0)] {
+            renderer.scene.time = time;
+            renderer.accumulate(weight, &mut |_| true).unwrap();
+        }
+        let mean = floats(&end(&mut renderer, PixelFormat::Rgba32F, SIZE, false).unwrap());
+        for ((mean, one), other) in mean.iter().zip(&one).zip(&other) {
+            let wanted = 0.75 * one + 0.25 * other;
+            assert!((mean - wanted).abs() <= 1e-5 * wanted.max(1e-6), "{tracer}: {mean}, not {wanted}");
+        }
+        assert!(one != other, "{tracer}: the disk does not turn");
+    }
+}
+
+/// Sixteen moments of a turning disk are as smooth as 256, to a step of 8 bits.
+#[test]
+fn sixteen_moments_are_enough() {
+    let (_, mut renderer) = both().into_iter().next_back().expect("a tracer");
+    renderer.scene.disk = Some(Disk { turbulence: 1.0, ..Disk::default() });
+    let [few, many, one] = [16, 256, 1].map(|samples| blurred(&mut renderer, samples, 12.0, PixelFormat::Rgba8Srgb));
+    let rms = |a: &[u8], b: &[u8]| {
+        let squares = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>();
+        (squares / a.len() as f64).sqrt()
+    };
+    println!("rms: 16 against 256 {:.3}, 1 against 256 {:.3}", rms(&few, &many), rms(&one, &many));
+    assert!(rms(&few, &many) < 1.0, "rms {}", rms(&few, &many));
+    assert!(rms(&one, &many) > 2.0 * rms(&few, &many), "nothing moves");
+}
+
+/// Whatever goes wrong, the frames that were added are there afterwards.
+#[test]
+fn mistakes_change_nothing() {
+    for (tracer, mut renderer) in both() {
+        let kind = |result: Result<()>| result.expect_err(tracer).kind;
+        assert_eq!(kind(renderer.accumulate(1.0, &mut |_| true)), ErrorKind::InvalidState);
+        assert_eq!(kind(end(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, false).map(|_| ())), ErrorKind::InvalidState);
+        assert_eq!(kind(renderer.begin_accumulation([0, 9], false)), ErrorKind::InvalidArgument);
+        renderer.begin_accumulation(SIZE, false).unwrap();
+        assert_eq!(kind(end(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, false).map(|_| ())), ErrorKind::InvalidState);
+        renderer.accumulate(1.0, &mut |_| true).unwrap();
+        for weight in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e7] {
+            assert_eq!(kind(renderer.accumulate(weight, &mut |_| true)), ErrorKind::InvalidArgument, "{weight}");
+        }
+        let mut calls = 0;
+        let cancelled = renderer.accumulate(1.0, &mut |_| {
+            calls += 1;
+            calls < 2
+        });
+        if calls > 1 && cancelled.is_err() {
+            assert_eq!(kind(cancelled), ErrorKind::Cancelled);
+        }
+        for (format, size, transparent) in [
+            (PixelFormat::R32F, SIZE, false),
+            (PixelFormat::Rgba8Srgb, [SIZE[0], SIZE[1] + 1], false),
+            (PixelFormat::Rgba8Srgb, SIZE, true),
+        ] {
+            let wrong = end(&mut renderer, format, size, transparent).map(|_| ());
+            assert_eq!(kind(wrong), ErrorKind::InvalidArgument, "{format} {size:?}");
+        }
+        let kept = end(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, false).unwrap();
+        let at_once = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        let off = kept.iter().zip(&at_once).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert!(off * 1000 <= kept.len(), "{tracer}: {off} bytes differ after mistakes");
+        renderer.begin_accumulation(SIZE, false).unwrap();
+        renderer.drop_accumulation();
+        assert_eq!(kind(renderer.accumulate(1.0, &mut |_| true)), ErrorKind::InvalidState);
+    }
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Metered pictures: auto exposure and local tone mapping, on both tracers. What is measured, and how it changes light,
+//! is tested in src/film/metering.rs. The GPU is whatever adapter comes first; without one the tests fail.
+
+use crate::frames::{both, picture};
+use bhr::error::ErrorKind;
+use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::renderer::Renderer;
+use bhr::scene::{AutoExposure, Film, Region, Scene, ToneMap};
+
+type Change = fn(&mut Scene);
+
+const ON: AutoExposure =
+    AutoExposure { strength: 1.0, percentile: 90.0, target: 0.5, least_ev: -20.0, most_ev: 20.0, adaptation: 1.0 };
+
+const SCENES: [(&str, Change); 6] = [
+    ("auto exposure with glare", |s| s.film.auto_exposure = ON),
+    ("auto exposure without, by the median", |s| {
+        let auto_exposure = AutoExposure { percentile: 50.0, target: 0.18, ..ON };
+        s.film = Film { bloom: 0.0, auto_exposure, ..s.film };
+    }),
+    ("highlights and shadows", |s| (s.film.highlights, s.film.shadows, s.film.exposure_ev) = (0.6, 0.4, 3.0)),
+    ("all of it, six stops too bright, spin 0.9", |s| {
+        s.film = Film { auto_exposure: ON, highlights: 0.5, shadows: 0.5, exposure_ev: 6.0, ..s.film };
+        (s.hole.spin, s.film.tone_map) = (0.9, ToneMap::Agx);
+    }),
+    ("a beam, shadows", |s| (s.film.beam_fwhm, s.film.shadows) = (0.05, 0.5)),
+    ("the sky alone", |s| (s.disk, s.film.auto_exposure) = (None, AutoExposure { percentile: 99.0, ..ON })),
+];
+
+/// The picture, and the stops that auto exposure added.
+fn metered(renderer: &mut Renderer, size: [u32; 2]) -> (Vec<u8>, f64) {
+    let pixels = picture(renderer, PixelFormat::Rgba8Srgb, size, None, false);
+    (pixels, renderer.stats().auto_ev)
+}
+
+#[test]
+fn gpu_and_cpu_pictures_agree() {
+    for size in [[192, 108], [401, 223]] {
+        for (name, set) in SCENES {
+            let [(cpu, cpu_ev), (gpu, gpu_ev)] = both().map(|(_, mut renderer)| {
+                set(&mut renderer.scene);
+                metered(&mut renderer, size)
+            });
+            let pixels = cpu.chunks_exact(4).zip(gpu.chunks_exact(4));
+            let differ = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2)).count();
+            println!("{name}, {size:?}: {cpu_ev} and {gpu_ev} EV, {differ} pixels differ by more than two steps");
+            assert!((cpu_ev - gpu_ev).abs() < 0.02, "{name}: {cpu_ev} EV on the CPU, {gpu_ev} on the GPU");
+            assert!(differ as f64 <= 2e-3 * f64::from(size[0] * size[1]), "{name}, {size:?}: {differ} pixels differ");
+        }
+    }
+}
+
+/// Auto exposure makes one picture of scenes that are lit by different light, and says how much it added.
+#[test]
+fn exposure_does_not_depend_on_the_light() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film.auto_exposure = ON;
+        let (before, ev) = metered(&mut renderer, [192, 108]);
+        renderer.scene.film.exposure_ev = -3.0;
+        let (after, dark_ev) = metered(&mut renderer, [192, 108]);
+        assert!((dark_ev - ev - 3.0).abs() < 0.01, "{tracer}: {ev} EV, and {dark_ev} three stops darker");
+        let differ = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+        assert!(differ * 500 < before.len(), "{tracer}: {differ} of {} bytes differ", before.len());
+    }
+}
+
+/// Frames of one size come nearer by shares; another size begins anew, and so does a film that is metered again after
+/// what is measured has changed.
+#[test]
+fn exposure_adapts_from_frame_to_frame() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film.auto_exposure = AutoExposure { adaptation: 0.5, ..ON };
+        let (_, at_once) = metered(&mut renderer, [192, 108]);
+        renderer.scene.film.exposure_ev = 4.0;
+        for frame in 1..6 {
+            let (_, ev) = metered(&mut renderer, [192, 108]);
+            let wanted = at_once - 4.0 * (1.0 - 0.5_f64.powi(frame));
+            assert!((ev - wanted).abs() < 0.02, "{tracer}, frame {frame}: {ev} EV, not {wanted}");
+        }
+        let (_, other) = metered(&mut renderer, [96, 54]);
+        assert!((other - at_once + 4.0).abs() < 0.3, "{tracer}: {other} EV at another size");
+    }
+}
+
+/// The same picture whether light is kept or made twice, and by several samples.
+#[test]
+fn light_that_is_not_kept_is_metered_alike() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film = Film { auto_exposure: ON, highlights: 0.5, shadows: 0.3, ..renderer.scene.film };
+        renderer.scene.quality.samples_per_pixel = 2;
+        let (kept, ev) = metered(&mut renderer, [192, 108]);
+        renderer.scene.quality.keep_light = Some(false);
+        let (twice, twice_ev) = metered(&mut renderer, [192, 108]);
+        assert!((ev - twice_ev).abs() < 0.01, "{tracer}: {ev} EV, and {twice_ev} where light is made twice");
+        let differ = kept.iter().zip(&twice).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+        assert!(differ * 1000 < kept.len(), "{tracer}: {differ} bytes differ");
+    }
+}
+
+/// The shadow keeps a dark edge: no pixel of it is brighter than the same film without local tone mapping shows, but
+/// for what all that is as dark gets; and black stays black.
+#[test]
+fn the_shadow_has_no_halo() {
+    for (tracer, mut renderer) in both() {
+        let film = Film { tone_map: ToneMap::None, bloom: 0.0, exposure_ev: 2.0, ..renderer.scene.film };
+        renderer.scene.film = film;
+        let size = [240, 136];
+        let (plain, _) = metered(&mut renderer, size);
+        renderer.scene.film = Film { highlights: 0.7, shadows: 0.7, ..film };
+        let (local, ev) = metered(&mut renderer, size);
+        assert_eq!(ev, 0.0);
+        let pixels = || plain.chunks_exact(4).zip(local.chunks_exact(4));
+        let black = pixels().filter(|(plain, _)| plain[..3] == [0; 3]).count();
+        let lifted = pixels().filter(|(plain, local)| plain[..3] == [0; 3] && local[..3].iter().any(|v| *v > 64));
+        assert!(black > 500 && lifted.clone().count() == 0, "{tracer}: {} of {black} are lifted", lifted.count());
+        let white = |pixel: &[u8]| pixel[..3].contains(&255);
+        let (burnt, saved) = (pixels().filter(|p| white(p.0)).count(), pixels().filter(|p| white(p.1)).count());
+        assert!(burnt > 100 && saved * 3 < burnt, "{tracer}: {burnt} clipped pixels became {saved}");
+    }
+}
+
+/// Parts of a frame do not know the whole, and floats are not exposed.
+#[test]
+fn parts_are_refused_and_floats_are_left_alone() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film.bloom = 0.0;
+        let plain = picture(&mut renderer, PixelFormat::Rgba32F, [96, 54], None, false);
+        let settings: [(&str, Change); 3] = [
+            ("auto_exposure", |s| s.film.auto_exposure.strength = 0.5),
+            ("highlights", |s| s.film.highlights = 0.5),
+            ("shadows", |s| s.film.shadows = 0.5),
+        ];
+        for (name, set) in settings {
+            renderer.scene.film = Film { bloom: 0.0, ..Film::default() };
+            set(&mut renderer.scene);
+            let region = Some(Region { full_width: 192, full_height: 108, x: 0, y: 0 });
+            let mut pixels = vec![0; 96 * 54 * 4];
+            let mut image = ImageMut::new(Layout::packed(PixelFormat::Rgba8Srgb, 96, 54), &mut pixels).unwrap();
+            let error = renderer.render(&mut image, false, region, &mut |_| true).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::InvalidState, "{tracer}: {error}");
+            assert!(error.to_string().contains(name), "{tracer}: {error}");
+            let floats = picture(&mut renderer, PixelFormat::Rgba32F, [96, 54], None, false);
+            assert!(floats == plain && renderer.stats().auto_ev == 0.0, "{tracer}, {name}: floats are changed");
+        }
+    }
+}
