@@ -268,7 +268,15 @@ fn gpu_film_agrees() {
             let film = Film { tone_map, exposure_ev: 0.5, ..Film::plain() };
             cases.push(FilmParams::new(&film, View::Light, format, format != PixelFormat::Rgba16F));
         }
-        let grade = Grade { white_balance: 4200.0, tint: -0.2, contrast: 1.3, saturation: 1.4, vignette: 0.7 };
+        let grade = Grade {
+            white_balance: 4200.0,
+            tint: -0.2,
+            contrast: 1.3,
+            saturation: 1.4,
+            vignette: 0.7,
+            grain: 0.5,
+            grain_seed: 3.0,
+        };
         let film = Film { tone_map, grade, ..Film::plain() };
         cases.push(FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false).over_frame(640, 480));
     }

@@ -215,6 +215,8 @@ unsafe impl Described for BhrFilm {
         Field { name: "auto_adaptation", offset: offset_of!(BhrFilm, auto_adaptation), kind: Kind::Numbers(1) },
         Field { name: "highlights", offset: offset_of!(BhrFilm, highlights), kind: Kind::Numbers(1) },
         Field { name: "shadows", offset: offset_of!(BhrFilm, shadows), kind: Kind::Numbers(1) },
+        Field { name: "grain", offset: offset_of!(BhrFilm, grain), kind: Kind::Numbers(1) },
+        Field { name: "grain_seed", offset: offset_of!(BhrFilm, grain_seed), kind: Kind::Numbers(1) },
     ];
 }
 

@@ -33,7 +33,7 @@ pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
 /// radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
-/// vignette, white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering.
+/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -105,12 +105,17 @@ pub struct BhrFilm {
     /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
     /// black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0
     pub shadows: f64,
+    /// Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
+    /// 0: off. Its mean stays, and it looks the same at every resolution. @since 0.2.0
+    pub grain: f64,
+    /// Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0
+    pub grain_seed: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 184];
+    const SIZES: &'static [usize] = &[24, 200];
     fn defaults() -> Self {
         Film::default().into()
     }
@@ -148,6 +153,8 @@ impl From<Film> for BhrFilm {
             auto_adaptation: film.auto_exposure.adaptation,
             highlights: film.highlights,
             shadows: film.shadows,
+            grain: film.grade.grain,
+            grain_seed: film.grade.grain_seed,
         }
     }
 }
@@ -178,6 +185,8 @@ impl TryFrom<BhrFilm> for Film {
             contrast: given.contrast,
             saturation: given.saturation,
             vignette: given.vignette,
+            grain: given.grain,
+            grain_seed: given.grain_seed,
         };
         let filmic = Filmic {
             toe_strength: given.toe_strength,

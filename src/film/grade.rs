@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The grade: changes exposed light, glare and beam included, before the tone map. In this order: a lens' fall-off,
-//! white balance, contrast, saturation. In f32, as `shaders/film/grade.wgsl`, which has the same function. Knows
+//! white balance, contrast, saturation, grain. In f32, as `shaders/film/grade.wgsl`, which has the same function. Knows
 //! nothing of pixels and formats. Black stays black.
 //!
 //! Fall-off: natural vignetting, cos^4 of the angle from the axis (e.g. W. J. Smith, Modern Optical Engineering,
@@ -8,7 +8,9 @@
 //! frame's field and resolution: cos^4 = (1 + r^2)^-2, r the share of the way to a corner. Contrast: a power of light
 //! about middle grey, 0.18 (v / 0.18)^c for each component. Saturation: as the ASC CDL has it (ASC Color Decision List
 //! Transfer Functions and Interchange Syntax, v1.2, 2009), Y + s (v - Y) with the luminance Y of Rec. 709, and nothing
-//! below 0.
+//! below 0. Grain: light times 1 + s n, with n of mean 0 and variance 1, so that the mean of the light stays: noise on
+//! a lattice of cells a 1080th of the frame's height wide (a pixel at least), white, even, and read between the four
+//! nearest cells, with weights whose squares sum to 1.
 
 use super::colour_map::luminance;
 use super::tone_map::MAX_SCENE_LIGHT;
@@ -19,6 +21,14 @@ use crate::scene::Grade;
 const MIDDLE_GREY: f64 = 0.18;
 /// Less is taken as this before a power or logarithm, which drivers need not have at 0.
 pub(crate) const LEAST_BASE: f32 = 1e-30;
+
+/// The deviation of a grain of 1.
+const MOST_GRAIN: f32 = 0.25;
+/// Rows of cells of grain in a frame.
+const GRAIN_ROWS: f64 = 1080.0;
+/// sqrt(3), the greatest noise of a cell; and the noise of one of 2^24 codes.
+pub(crate) const GRAIN_REACH: f32 = 1.732_050_8;
+pub(crate) const GRAIN_SCALE: f32 = 2.0 * GRAIN_REACH / 16_777_216.0;
 
 const NEUTRAL: [[f32; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
@@ -41,6 +51,13 @@ pub struct GradeParams {
     pub vignette: f32,
     /// The matrix that makes a light white, by columns.
     pub white_balance: [[f32; 4]; 3],
+    /// The standard deviation of light by grain, in the light.
+    pub grain: f32,
+    /// Cells of grain along a side of a pixel.
+    pub grain_cells: f32,
+    /// That of the grain's noise.
+    pub grain_seed: u32,
+    pub unused: u32,
 }
 
 impl GradeParams {
@@ -56,13 +73,22 @@ impl GradeParams {
             vignette_scale: 0.0,
             vignette: grade.vignette as f32,
             white_balance: columns.unwrap_or(NEUTRAL),
+            grain: MOST_GRAIN * grade.grain as f32,
+            grain_cells: 1.0,
+            grain_seed: seed_of(grade.grain_seed),
+            unused: 0,
         }
     }
 
     /// In a whole frame of this size in pixels.
     pub fn over_frame(self, width: u32, height: u32) -> Self {
         let [x, y] = [width, height].map(|side| 0.5 * f64::from(side));
-        Self { vignette_centre: [x as f32, y as f32], vignette_scale: (1.0 / (x * x + y * y)) as f32, ..self }
+        Self {
+            vignette_centre: [x as f32, y as f32],
+            vignette_scale: (1.0 / (x * x + y * y)) as f32,
+            grain_cells: (GRAIN_ROWS / f64::from(height)).min(1.0) as f32,
+            ..self
+        }
     }
 }
 
@@ -78,7 +104,40 @@ pub fn graded(grade: &GradeParams, scene: [f32; 3], x: u32, y: u32) -> [f32; 3] 
         grade.contrast_factor * balanced.powf(grade.contrast)
     });
     let grey = luminance(contrasted);
-    contrasted.map(|v| (grey + grade.saturation * (v - grey)).clamp(0.0, MAX_SCENE_LIGHT))
+    let grain = 1.0 + grade.grain * grain_noise(grade, x, y);
+    contrasted.map(|v| ((grey + grade.saturation * (v - grey)) * grain).clamp(0.0, MAX_SCENE_LIGHT))
+}
+
+/// The seed of a number that the host gives.
+fn seed_of(given: f64) -> u32 {
+    let bits = given.to_bits();
+    hash(bits as u32 ^ hash((bits >> 32) as u32))
+}
+
+/// Noise of mean 0 and variance 1 at a pixel; within +-2 sqrt(3).
+pub(crate) fn grain_noise(grade: &GradeParams, x: u32, y: u32) -> f32 {
+    let [px, py] = [x, y].map(|v| (v as f32 + 0.5) * grade.grain_cells);
+    let [cx, cy] = [px.floor(), py.floor()];
+    let [fx, fy] = [px - cx, py - cy];
+    let (x, y, seed) = (cx as u32, cy as u32, grade.grain_seed);
+    let [a, b, c, d] = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|[x, y]| grain_cell(x, y, seed));
+    let row = |left: f32, right: f32| left + fx * (right - left);
+    let sum = row(a, b) + fy * (row(c, d) - row(a, b));
+    let squares = |f: f32| 1.0 - 2.0 * f * (1.0 - f);
+    sum / (squares(fx) * squares(fy)).sqrt()
+}
+
+/// A cell's noise, even within +-sqrt(3).
+pub(crate) fn grain_cell(x: u32, y: u32, seed: u32) -> f32 {
+    let code = hash(x ^ hash(y ^ seed)) >> 8;
+    (code as f32 + 0.5) * GRAIN_SCALE - GRAIN_REACH
+}
+
+/// A number of which each bit depends on all bits of `value` (the mixer "lowbias32" of C. Wellons, 2018).
+pub(crate) fn hash(value: u32) -> u32 {
+    let value = (value ^ value >> 16).wrapping_mul(0x7feb_352d);
+    let value = (value ^ value >> 15).wrapping_mul(0x846c_a68b);
+    value ^ value >> 16
 }
 
 #[cfg(test)]
@@ -144,11 +203,50 @@ mod tests {
         assert!((graded(&half.grade, [1.0; 3], 0, 0)[0] - 0.625).abs() < 1e-3);
     }
 
+    /// The light's mean and its deviation, at several resolutions, and another picture for another seed.
+    #[test]
+    fn grain_keeps_the_light_and_has_its_strength() {
+        for [width, height] in [[480_u32, 270_u32], [1920, 1080], [3840, 2160], [5000, 2812]] {
+            for (strength, seed) in [(0.2, 0.0), (1.0, 7.5)] {
+                let grade = Grade { grain: strength, grain_seed: seed, ..Grade::default() };
+                let film = Film { grade, ..Film::plain() };
+                let params = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
+                let grade = params.over_frame(width, height).grade;
+                let (mut sum, mut squares, count) = (0.0, 0.0, f64::from(480 * 270));
+                for (x, y) in (0..270).flat_map(|y| (0..480).map(move |x| (x, y))) {
+                    let light = graded(&grade, [0.3, 0.6, 0.9], x, y);
+                    assert!((light[1] / light[0] - 2.0).abs() < 1e-4, "grain has a colour");
+                    let noise = f64::from(light[0]) / 0.3 - 1.0;
+                    (sum, squares) = (sum + noise, squares + noise * noise);
+                }
+                let (mean, deviation) = (sum / count, (squares / count).sqrt());
+                let wanted = 0.25 * strength;
+                // Cells wider than a pixel are fewer.
+                let cells = (f64::from(height) / 1080.0).max(1.0);
+                assert!(mean.abs() < 4.0 * wanted * cells / count.sqrt(), "{width}, {strength}: mean {mean}");
+                assert!((deviation / wanted - 1.0).abs() < 0.02, "{width}, {strength}: deviation {deviation}");
+            }
+        }
+        let noise = |seed: f64, x: u32| {
+            let grade = params(Grade { grain: 1.0, grain_seed: seed, ..Grade::default() }).grade;
+            grain_noise(&grade, x, 5)
+        };
+        let alike = (0..1000).filter(|x| (noise(0.0, *x) - noise(1.0, *x)).abs() < 0.1).count();
+        assert!(alike < 100, "{alike} of 1000 pixels have the same grain for another seed");
+    }
+
     #[test]
     fn a_grade_that_is_off_changes_no_bit_and_others_keep_black() {
         let off = params(Grade::default());
         assert_eq!(off.grade.graded, 0);
-        let grade = Grade { white_balance: 2000.0, tint: 1.0, contrast: 0.25, saturation: 4.0, vignette: 1.0 };
+        let grade = Grade {
+            white_balance: 2000.0,
+            tint: 1.0,
+            contrast: 0.25,
+            saturation: 4.0,
+            vignette: 1.0,
+            ..Grade::default()
+        };
         for tone_map in [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic] {
             for colour_map in [ColourMap::None, ColourMap::Afmhot] {
                 let film = Film { tone_map, colour_map, grade, ..Film::plain() };

@@ -21,7 +21,7 @@ use filmic::FilmicParams;
 use grade::GradeParams;
 use tone_map::MAX_SCENE_LIGHT;
 
-/// The properties of a frame that film needs: the uniform `film` of the shader, 160 bytes.
+/// The properties of a frame that film needs: the uniform `film` of the shader, 176 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct FilmParams {

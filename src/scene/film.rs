@@ -7,6 +7,8 @@ use crate::error::{Error, Result, out_of_range};
 /// 2002).
 const COOLEST_WHITE: f64 = 1667.0;
 const HOTTEST_WHITE: f64 = 25000.0;
+/// The largest `Grade::grain_seed`: from there on numbers a step apart are equal.
+const MOST_SEED: f64 = 1e15;
 /// The least `AutoExposure::adaptation`: that of frames a millisecond apart, with a time constant of 17 minutes.
 const SLOWEST_ADAPTATION: f64 = 1e-6;
 
@@ -42,18 +44,30 @@ pub struct Grade {
     pub saturation: f64,
     /// The share of a lens' natural fall-off, 0 .. 1. Default 0.
     pub vignette: f64,
+    /// Grain, 0 off (default) .. 1, which is a deviation of a quarter of the light.
+    pub grain: f64,
+    /// That of the grain's noise, any number. Default 0.
+    pub grain_seed: f64,
 }
 
 impl Default for Grade {
     fn default() -> Self {
-        Self { white_balance: 0.0, tint: 0.0, contrast: 1.0, saturation: 1.0, vignette: 0.0 }
+        Self {
+            white_balance: 0.0,
+            tint: 0.0,
+            contrast: 1.0,
+            saturation: 1.0,
+            vignette: 0.0,
+            grain: 0.0,
+            grain_seed: 0.0,
+        }
     }
 }
 
 impl Grade {
     /// Whether it changes anything.
     pub fn is_on(&self) -> bool {
-        *self != Self::default()
+        Self { grain_seed: 0.0, ..*self } != Self::default()
     }
 }
 
@@ -171,6 +185,8 @@ impl Film {
             ("shoulder_length", filmic.shoulder_length, 0.0, 1.0),
             ("shoulder_angle", filmic.shoulder_angle, 0.0, 1.0),
             ("vignette", grade.vignette, 0.0, 1.0),
+            ("grain", grade.grain, 0.0, 1.0),
+            ("grain_seed", grade.grain_seed, -MOST_SEED, MOST_SEED),
             ("auto_exposure", auto.strength, 0.0, 1.0),
             ("auto_percentile", auto.percentile, 0.0, 100.0),
             ("auto_target", auto.target, 0.001, 1000.0),

@@ -288,6 +288,16 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, shadows), NAN, "shadows"},
         {offsetof(BhrFilm, shadows), INFINITY, "shadows"},
         {offsetof(BhrFilm, shadows), -INFINITY, "shadows"},
+        {offsetof(BhrFilm, grain), -0.01, "grain"},
+        {offsetof(BhrFilm, grain), 1.01, "grain"},
+        {offsetof(BhrFilm, grain), NAN, "grain"},
+        {offsetof(BhrFilm, grain), INFINITY, "grain"},
+        {offsetof(BhrFilm, grain), -INFINITY, "grain"},
+        {offsetof(BhrFilm, grain_seed), -1.1e15, "grain_seed"},
+        {offsetof(BhrFilm, grain_seed), 1.1e15, "grain_seed"},
+        {offsetof(BhrFilm, grain_seed), NAN, "grain_seed"},
+        {offsetof(BhrFilm, grain_seed), INFINITY, "grain_seed"},
+        {offsetof(BhrFilm, grain_seed), -INFINITY, "grain_seed"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));

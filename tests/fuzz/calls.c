@@ -272,6 +272,8 @@ static void scene_call(BhrContext *context) {
         film.auto_adaptation = number();
         film.highlights = number();
         film.shadows = number();
+        film.grain = number();
+        film.grain_seed = number();
         check(bhr_set_film(context, &film));
         break;
     case 8: check(bhr_set_time(context, number())); break;

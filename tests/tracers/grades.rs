@@ -12,7 +12,15 @@ const SIZE: [u32; 2] = [192, 108];
 
 const LOOKS: [(&str, Change); 3] = [
     ("all of the grade", |s| {
-        let grade = Grade { white_balance: 4500.0, tint: 0.2, contrast: 1.3, saturation: 1.2, vignette: 0.8 };
+        let grade = Grade {
+            white_balance: 4500.0,
+            tint: 0.2,
+            contrast: 1.3,
+            saturation: 1.2,
+            vignette: 0.8,
+            grain: 0.6,
+            grain_seed: 1.0,
+        };
         s.film = Film { tone_map: ToneMap::None, exposure_ev: -1.0, grade, ..s.film };
     }),
     ("a vignette under FILMIC", |s| {

@@ -319,6 +319,8 @@ fn all() -> Vec<(&'static str, String)> {
         BLOCK_SHARES: vec3 = metering::BLOCK_SHARES;
         STOP_SHARES: vec2 = metering::STOP_SHARES;
         GREY_STOP: f32 = metering::GREY_STOP;
+        GRAIN_REACH: f32 = grade::GRAIN_REACH;
+        GRAIN_SCALE: f32 = grade::GRAIN_SCALE;
         COLOUR_MAP_NONE: u32 = ColourMap::None;
         LUMINANCE: vec3 = colour_map::LUMINANCE;
         BEAM_QUARTERS: i32 = BEAM_SHARES / 4;

@@ -28,8 +28,8 @@ var<private> film: FilmParams;
 var<private> meter: MeterParams;
 fn enter_film() {
     film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u), word(8u), in1(9u),
-        in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in4(28u), in4(32u),
-        in4(36u));
+        in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in1(28u),
+        in1(29u), word(30u), word(31u), in4(32u), in4(36u), in4(40u));
 }
 fn enter_meter() {
     meter = MeterParams(vec2<u32>(1u), vec2<u32>(1u), 1u, 1.0, 0.0, in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u),
@@ -43,7 +43,7 @@ fn out_bytes(words: vec4<u32>, count: u32) {
 ";
 
 /// Words of `FilmParams`, behind which light comes.
-const LIGHT: usize = 40;
+const LIGHT: usize = 44;
 
 fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
     let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic][i.random.below(4) as usize];
@@ -55,6 +55,8 @@ fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
         contrast: i.random.log(0.25, 4.0),
         saturation: i.random.even(0.0, 4.0),
         vignette: i.random.even(0.0, 1.0),
+        grain: i.random.even(0.0, 1.0),
+        grain_seed: i.random.even(-10.0, 10.0),
     };
     let filmic = Filmic {
         toe_strength: i.random.even(0.0, 1.0),
@@ -143,7 +145,7 @@ pub fn group() -> Group {
     let any = f64::from(FROM_UNIFORM);
     let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any), ("GRADE", any)];
     let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
-    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(40u), word(44u), word(45u)), pixel_words());";
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(44u), word(48u), word(49u)), pixel_words());";
     let twins = vec![
         twin(
             film,
@@ -202,7 +204,7 @@ pub fn group() -> Group {
         twin(
             encode,
             "limited is_nan",
-            "out3(limited(in3(40u), 100.0));",
+            "out3(limited(in3(44u), 100.0));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 push_light(i);
@@ -228,7 +230,7 @@ pub fn group() -> Group {
         twin(
             "film/filmic",
             "filmic log_rest",
-            "enter_film(); out3(filmic(in3(40u)));",
+            "enter_film(); out3(filmic(in3(44u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -240,7 +242,7 @@ pub fn group() -> Group {
         twin(
             "film/grade",
             "graded",
-            "enter_film(); out3(graded(in3(40u), word(43u), word(44u)));",
+            "enter_film(); out3(graded(in3(44u), word(47u), word(48u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -280,7 +282,7 @@ pub fn group() -> Group {
         twin(
             colours,
             "false_colour scaled sequential diverging lab_encoded",
-            "enter_film(); out3(false_colour(in1(40u)));",
+            "enter_film(); out3(false_colour(in1(44u)));",
             push_value,
             |i, o| {
                 let film = params(i);
