@@ -236,6 +236,8 @@ const Field FILM_FIELDS[] = {
     {"--vignette", OPTION_DOUBLE, offsetof(BhrFilm, vignette), NULL, 0, 1, "0 .. 1",
      "0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the "
      "whole frame: at 1, light is a quarter there", NULL},
+    {"--lut-strength", OPTION_DOUBLE, offsetof(BhrFilm, lut_strength), NULL, 0, 1, "0 .. 1",
+     "0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

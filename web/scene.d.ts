@@ -469,7 +469,7 @@ export interface Sky {
 /**
  * How light becomes pixels, in 8-bit formats and windows of "light" only: float formats hold linear radiance, and other
  * views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation, tone map, the
- * sRGB curve or the colour map, dithering.
+ * sRGB curve and the LUT, or the colour map, dithering.
  */
 export interface Film {
     /**
@@ -569,6 +569,12 @@ export interface Film {
      * @default 0
      */
     vignette: number;
+    /**
+     * 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+     * @range 0 .. 1
+     * @default 1
+     */
+    lut_strength: number;
 }
 
 /** How exactly to trace. */

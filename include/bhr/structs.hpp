@@ -245,6 +245,8 @@ struct Film {
     /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     /// frame: at 1, light is a quarter there.
     double vignette;
+    /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off.
+    double lut_strength;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

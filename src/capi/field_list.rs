@@ -207,6 +207,7 @@ unsafe impl Described for BhrFilm {
         Field { name: "shoulder_length", offset: offset_of!(BhrFilm, shoulder_length), kind: Kind::Numbers(1) },
         Field { name: "shoulder_angle", offset: offset_of!(BhrFilm, shoulder_angle), kind: Kind::Numbers(1) },
         Field { name: "vignette", offset: offset_of!(BhrFilm, vignette), kind: Kind::Numbers(1) },
+        Field { name: "lut_strength", offset: offset_of!(BhrFilm, lut_strength), kind: Kind::Numbers(1) },
     ];
 }
 

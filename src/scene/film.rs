@@ -90,6 +90,8 @@ pub struct Film {
     pub colour_map: ColourMap,
     pub grade: Grade,
     pub filmic: Filmic,
+    /// The share of what the LUT (`Scene::film_lut`) makes of colours, 0 .. 1. Default 1.
+    pub lut_strength: f64,
     /// Whether frames of a region, which cannot have glare, go without it; else they fail. True (default) until a host
     /// states a film of its own: those that never asked for glare are to get their tiles.
     pub glare_is_optional: bool,
@@ -105,6 +107,7 @@ impl Default for Film {
             colour_map: ColourMap::None,
             grade: Grade::default(),
             filmic: Filmic::default(),
+            lut_strength: 1.0,
             glare_is_optional: true,
         }
     }
@@ -127,6 +130,7 @@ impl Film {
             ("shoulder_length", filmic.shoulder_length, 0.0, 1.0),
             ("shoulder_angle", filmic.shoulder_angle, 0.0, 1.0),
             ("vignette", grade.vignette, 0.0, 1.0),
+            ("lut_strength", self.lut_strength, 0.0, 1.0),
         ] {
             if !(low..=high).contains(&value) {
                 return Err(out_of_range(&format!("film {name}"), value, low, high));

@@ -263,7 +263,7 @@ class Sky(Struct):
 class Film(Struct):
     """How light becomes pixels, in 8-bit formats and windows of View.LIGHT only: float formats hold linear radiance,
     and other views show values. In this order: exposure, bloom, beam, vignette, white balance, contrast, saturation,
-    tone map, the sRGB curve or the colour map, dithering."""
+    tone map, the sRGB curve and the LUT, or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -307,6 +307,8 @@ class Film(Struct):
     #: 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     #: frame: at 1, light is a quarter there. Default 0.
     vignette: float = 0.0
+    #: 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+    lut_strength: float = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
