@@ -111,13 +111,13 @@ class SceneText:
         if isinstance(lut, (str, os.PathLike)):
             self._call(lib.bhr_set_film_lut_file, _path(lut))
             return
-        if lut is None:
-            nodes, side = np.zeros(0, np.float32), 0
-        elif isinstance(lut, np.ndarray):
+        nodes: npt.NDArray[np.float32] = np.zeros(0, np.float32)
+        side = 0
+        if isinstance(lut, np.ndarray):
             nodes, side = np.ascontiguousarray(lut, np.float32), len(lut) if lut.ndim > 0 else 0
             if nodes.shape != (side, side, side, 3):
                 raise ValueError(f"a LUT has the shape (side, side, side, 3), not {lut.shape}")
-        else:
+        elif lut is not None:
             raise TypeError(f"a LUT is a path or a numpy array, not {type(lut).__name__}")
         with self._gate as context:
             check(lib.bhr_set_film_lut(context, ffi.from_buffer("float[]", nodes), nodes.size, side))
