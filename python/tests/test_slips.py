@@ -269,3 +269,11 @@ def test_luts_come_from_files_and_arrays(ctx, tmp_path):
     with pytest.raises(TypeError, match="a LUT is a path or a numpy array, not list"):
         ctx.set_film_lut([0, 1])
     assert np.array_equal(ctx.render(32, 18).array, expected)
+
+
+def test_effects_have_strengths(ctx):
+    assert ctx.effect_strength("beaming") == 1.0
+    ctx.set_effect_strength("beaming | doppler_shift", 0.25)
+    assert ctx.effect_strength("beaming") == ctx.effect_strength(bhr.Effects.DOPPLER_SHIFT) == 0.25
+    with pytest.raises(bhr.InvalidArgument, match="strength"):
+        ctx.set_effect_strength("beaming", 2.0)
