@@ -176,7 +176,7 @@ pub fn group() -> Group {
         )
         .with(&all)
         .exactly(),
-        // A table of random colours has steps of 16 from one code to the next, and more under strong contrast.
+        // Through a table of random colours, but for films with a colour map.
         twin(
             film,
             "develop develop_8bit shown_colour",
