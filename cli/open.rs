@@ -3,6 +3,7 @@
 
 use crate::ending::Ending;
 use bhr::error::{Error, ErrorKind};
+use bhr::image::LutFile;
 use bhr::renderer::{Backend, Renderer, RendererOptions, adapters};
 use bhr::scene_file::{Render, SceneFile};
 use bhr::sky::MapFile;
@@ -10,10 +11,11 @@ use bhr::tracer::AdapterInfo;
 use clap::ArgMatches;
 use std::path::PathBuf;
 
-/// A scene file with its map, which is read once.
+/// A scene file with its map and its LUT, which are read once.
 pub struct Opened {
     pub file: SceneFile,
     map: Option<MapFile>,
+    lut: Option<LutFile>,
 }
 
 /// Reads the scene that an argument names.
@@ -22,7 +24,8 @@ pub fn scene(given: &ArgMatches) -> Result<Opened, Ending> {
     let path = std::path::absolute(path).map_err(|error| Ending::io(path, error))?;
     let file = SceneFile::load(&path)?;
     let map = file.map().map(|map| MapFile::load(map, None)).transpose()?;
-    Ok(Opened { file, map })
+    let lut = file.lut().map(|lut| LutFile::load(lut, None)).transpose()?;
+    Ok(Opened { file, map, lut })
 }
 
 impl Opened {
@@ -34,7 +37,8 @@ impl Opened {
     pub fn show(&self, seconds: f64, renderer: &mut Renderer) -> Result<Option<bhr::scene::Region>, Ending> {
         let moment = self.file.at(seconds, &renderer.scene)?;
         renderer.scene = moment.scene;
-        renderer.scene.sky_map = self.map.as_ref().map(|map| map.map().clone());
+        renderer.scene.sky_map = self.map.as_ref().map(|map| map.value().clone());
+        renderer.scene.film_lut = self.lut.as_ref().map(|lut| lut.value().clone());
         Ok(moment.region)
     }
 }

@@ -13,7 +13,7 @@ use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
 use bhr::scene::{Eye, MOST_CROSSINGS, MOST_OUTPUTS, Made, Output, Projection, RayOutput, RayOutputKind, Region, View};
 use clap::ArgMatches;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where the pictures of the two eyes lie in one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,8 +185,10 @@ impl Order {
             return Err(Ending::usage("--shutter: motion blur is for whole frames of one eye without --outputs"));
         }
         let transparent = given.get_flag("transparent");
-        let map = opened.file.map().map(|map| std::fs::read(map).map_err(|error| Ending::io(map, error)));
-        let map = map.transpose()?.map(|bytes| hash(&bytes));
+        let hash_of =
+            |path: &Path| std::fs::read(path).map(|bytes| hash(&bytes)).map_err(|error| Ending::io(path, error));
+        let map = opened.file.map().map(hash_of).transpose()?;
+        let lut = opened.file.lut().map(hash_of).transpose()?;
         let scene = opened.file.text_of_pixels()?;
         let mut all = format!("{scene}\n{map:?} {size:?} {samples:?} {format:?} {transparent}");
         if stereo.is_some() || !outputs.is_empty() {
@@ -194,6 +196,9 @@ impl Order {
         }
         if let Some(shutter) = shutter {
             all += &format!(" {shutter:?} {:x}", render.frames_per_second.to_bits());
+        }
+        if let Some(lut) = lut {
+            all += &format!(" LUT {lut:?}");
         }
         let scene_hash = hash(all.as_bytes());
         let rate = render.frames_per_second;

@@ -72,6 +72,8 @@ static const SceneOption TABLE[] = {
     {"--sky-map", SCENE_SKY, OPTION_TEXT, AT(sky_map), "FILE", NULL, "a picture of the whole sky, .png .ppm .exr",
      NULL},
 
+    {"--lut", SCENE_FILM, OPTION_TEXT, AT(lut), "FILE", NULL, "a 3D LUT for the picture's colours, .cube", NULL},
+
     {"--effects", SCENE_EFFECTS, OPTION_BITS, AT(scene.effects), NULL, NULL, "effects of relativity on light",
      EFFECTS},
     {"--effect-strengths", SCENE_EFFECTS, OPTION_VECTOR, AT(scene.effect_strengths), "D,G,B", "0 to 1 each",
@@ -273,6 +275,9 @@ int scene_input_finish(SceneInput *input, BhrContext *context, const Options *op
     }
     if (input->sky_map != NULL) {
         status = set_map(&input->scene, context, input->sky_map);
+    }
+    if (status >= 0 && input->lut != NULL) {
+        status = bhr_set_film_lut_file(context, input->lut);
     }
     if (status >= 0) {
         input->scene.time = input->time * input->scene.mass;

@@ -36,6 +36,7 @@ typedef struct SceneInput {
     double      time;                          /* in M */
     double      eye_distance;                  /* in M */
     const char *sky_map;                       /* a file; NULL: none */
+    const char *lut;                           /* a .cube file; NULL: none */
     TextList    volumes, hot_spots;            /* as matter.h reads them */
 } SceneInput;
 

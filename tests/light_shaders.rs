@@ -52,7 +52,8 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    bhr::gpu::join_wgsl(&[BINDINGS, ENTRIES].concat()).expect("WGSL that can be joined")
+    let joined = bhr::gpu::join_wgsl(&[BINDINGS, ENTRIES].concat()).expect("WGSL that can be joined");
+    joined.replace("@group(2) @binding(2) var film_lut", "@group(0) @binding(5) var film_lut")
 }
 
 #[test]
@@ -116,12 +117,20 @@ impl Gpu {
         ];
         let kinds = [true, true, true, false].map(|read_only| wgpu::BufferBindingType::Storage { read_only });
         let kinds = kinds.into_iter().chain([wgpu::BufferBindingType::Uniform]);
+        let buffer_of = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let lut_type = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D3,
+            multisampled: false,
+        };
         let entries: Vec<_> = kinds
+            .map(buffer_of)
+            .chain([lut_type])
             .zip(0..)
             .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
                 binding,
                 visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+                ty,
                 count: None,
             })
             .collect();
@@ -143,6 +152,7 @@ impl Gpu {
             ("TONE_MAP", f64::from(film.tone_map)),
             ("COLOUR_MAP", f64::from(film.colour_map)),
             ("GRADE", f64::from(film.grade.graded)),
+            ("LUT", 0.0),
             ("FALSE_COLOUR", f64::from(u32::from(film.false_colour != 0))),
         ];
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -153,10 +163,23 @@ impl Gpu {
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
-        let entries: Vec<_> = buffers
-            .iter()
+        // These films have no LUT; src/gpu/twins has.
+        let lut = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let lut = lut.create_view(&wgpu::TextureViewDescriptor::default());
+        let resources = buffers.iter().map(|buffer| buffer.as_entire_binding());
+        let entries: Vec<_> = resources
+            .chain([wgpu::BindingResource::TextureView(&lut)])
             .zip(0..)
-            .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
             .collect();
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,

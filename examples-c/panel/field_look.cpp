@@ -36,6 +36,7 @@ const struct {
     {FILM_FIELDS, "--shoulder-strength", "shoulder", 0.0, nullptr},
     {FILM_FIELDS, "--shoulder-length", "its length", 0.0, nullptr},
     {FILM_FIELDS, "--shoulder-angle", "its angle", 0.0, nullptr},
+    {FILM_FIELDS, "--lut-strength", "LUT", 0.0, nullptr},
     {QUALITY_FIELDS, "--samples-per-pixel", "samples", 0.0, nullptr},
     {QUALITY_FIELDS, "--max-disk-order", "disk images", 0.0, nullptr},
     {QUALITY_FIELDS, "--volume-resolution", "deep matter", 0.0, nullptr},

@@ -151,6 +151,13 @@ class Context {
     Result<void> set_film(const Film &film) { return set(bhr_set_film, film.c()); }
     /// bhr_get_film.
     Result<Film> film() const { return filled<Film, BhrFilm>(bhr_get_film); }
+    /// bhr_set_film_lut: side * side * side nodes; an empty list for none.
+    Result<void> set_film_lut(span<const float> nodes, std::uint32_t side) {
+        return detail::call([&] { return bhr_set_film_lut(get(), nodes.data(), nodes.size(), side); });
+    }
+    Result<void> set_film_lut_file(const std::string &path) {
+        return detail::call([&] { return bhr_set_film_lut_file(get(), path.c_str()); });
+    }
 
     Result<void> set_effects(Effects effects) {
         return detail::call([&] { return bhr_set_effects(get(), static_cast<std::uint32_t>(effects)); });

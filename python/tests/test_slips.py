@@ -237,3 +237,43 @@ def test_a_traceback_names_the_slip():
     slip = "import bhr\nwith bhr.Context('cpu') as context:\n    context.spn = 0.5\n"
     done = subprocess.run([sys.executable, "-c", slip], capture_output=True, text=True, check=False)
     assert done.returncode == 1 and "'Context' object has no attribute 'spn'" in done.stderr
+
+
+def test_luts_come_from_files_and_arrays(ctx, tmp_path):
+    at = np.linspace(0.0, 1.0, 5)
+    blue, green, red = np.meshgrid(at, at, at, indexing="ij")
+    turned = np.stack([green, blue, red], axis=-1)
+    plain = ctx.render(32, 18).array
+    ctx.set_film_lut(turned)
+    expected = ctx.render(32, 18).array
+    assert np.abs(expected[..., :3].astype(int) - plain[..., [1, 2, 0]]).max() <= 1
+    rows = "\n".join(" ".join(map(repr, map(float, node))) for node in turned.reshape(-1, 3))
+    (tmp_path / "look.cube").write_text(f"LUT_3D_SIZE 5\n{rows}\n")
+    for path in tmp_path / "look.cube", str(tmp_path / "look.cube"):
+        ctx.set_film_lut(None)
+        assert np.array_equal(ctx.render(32, 18).array, plain)
+        ctx.set_film_lut(path)
+        assert np.array_equal(ctx.render(32, 18).array, expected)
+    ctx.film = ctx.film.replace(lut_strength=0.0)
+    assert np.array_equal(ctx.render(32, 18).array, plain)
+    ctx.film = ctx.film.replace(lut_strength=1.0)
+    with pytest.raises(bhr.FileError, match=r"missing\.cube"):
+        ctx.set_film_lut("missing.cube")
+    for wrong in np.zeros((5, 5, 5)), np.zeros((2, 2, 3, 3)), np.zeros(()):
+        with pytest.raises(ValueError, match="shape"):
+            ctx.set_film_lut(wrong)
+    with pytest.raises(bhr.InvalidArgument, match="side is 1"):
+        ctx.set_film_lut(np.zeros((1, 1, 1, 3)))
+    with pytest.raises(bhr.InvalidArgument, match="finite"):
+        ctx.set_film_lut(np.full((2, 2, 2, 3), np.nan))
+    with pytest.raises(TypeError, match="a LUT is a path or a numpy array, not list"):
+        ctx.set_film_lut([0, 1])
+    assert np.array_equal(ctx.render(32, 18).array, expected)
+
+
+def test_effects_have_strengths(ctx):
+    assert ctx.effect_strength("beaming") == 1.0
+    ctx.set_effect_strength("beaming | doppler_shift", 0.25)
+    assert ctx.effect_strength("beaming") == ctx.effect_strength(bhr.Effects.DOPPLER_SHIFT) == 0.25
+    with pytest.raises(bhr.InvalidArgument, match="strength"):
+        ctx.set_effect_strength("beaming", 2.0)

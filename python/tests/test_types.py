@@ -41,6 +41,7 @@ def show(ctx: bhr.Context, out: npt.NDArray[np.float32]) -> bhr.Frame:
     ctx.sky = bhr.Sky("stars | grid")
     ctx.effects = "beaming"
     ctx.set_sky_map("sky.exr")
+    ctx.set_film_lut("look.cube")
     ctx.render_outputs(4, 3, ["light", (bhr.OutputKind.DISK, 1), ("view", "order")], samples=4)
     print(named, motion, bhr.Frame.empty(4, 3, "rgba16f"), ctx.render(4, 3, format="rgba32f", samples=4))
     ctx.axis = (0.0, 0.0, 1.0)

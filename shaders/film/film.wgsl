@@ -9,6 +9,7 @@
 #import film/encode
 #import film/filmic
 #import film/grade
+#import film/lut
 #import film/params
 #import shared/not_inlined
 
@@ -20,6 +21,8 @@ override PIXELS: u32 = 0u;
 override COLOUR_MAP: u32 = 0u;
 // Whether a kernel is made for light that is graded (1) or not (0), or FROM_UNIFORM.
 override GRADE: u32 = 0u;
+// Whether a kernel is made for light whose colours go through a LUT.
+override LUT: bool = false;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
 
@@ -108,9 +111,9 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         codes = vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
     } else {
         let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
-        // Most of the sky is black, and black stays black, whatever the dither.
+        // Most of the sky is black, and black stays black, whatever the dither; but a LUT may have light for it.
         var colour = vec3<u32>(0u);
-        if is_agx() || any(scene != vec3<f32>(0.0)) {
+        if LUT || is_agx() || any(scene != vec3<f32>(0.0)) {
             colour = vec3<u32>(shown_colour(with_grade(scene, x, y)) * 255.0 + dither(x, y));
         }
         codes = vec4<u32>(colour, u32(alpha_of(radiance.w) * 255.0 + 0.5));
@@ -163,6 +166,9 @@ fn shown_colour(scene: vec3<f32>) -> vec3<f32> {
         colour = afmhot(tone_map(vec3<f32>(luminance(scene))).x);
     } else {
         colour = srgb_encode(tone_map(scene));
+        if LUT {
+            colour = through_lut(colour);
+        }
     }
     return colour;
 }

@@ -28,4 +28,8 @@ struct FilmParams {
     filmic_toe: vec4<f32>,
     filmic_line: vec4<f32>,
     filmic_shoulder: vec4<f32>,
+    lut_low: vec3<f32>,
+    lut_side: u32,
+    lut_scale: vec3<f32>,
+    lut_strength: f32,
 }

@@ -10,7 +10,7 @@ use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
 use super::message::{LastMessage, copy_last};
 use super::panic::guarded_always;
 use super::pointer::{Out, check_flags};
-use super::state::State;
+use super::state::{Files, State};
 use super::status::BhrStatus;
 use super::version::BHR_ABI_VERSION;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
@@ -248,7 +248,7 @@ fn create_with(log: Option<Registered>, make: impl FnOnce() -> Result<Renderer>)
     let adapter = renderer.adapter();
     ::log::info!(target: "bhr", "context on {} ({})", adapter.name, adapter.backend);
     drop(scope);
-    let state = Mutex::new(State { renderer, region: None, progress: None, loaded: None, sky_map_file: None });
+    let state = Mutex::new(State { renderer, region: None, progress: None, loaded: None, files: Files::default() });
     let message = Arc::new(LastMessage::new());
     Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), message, log }))
 }

@@ -217,6 +217,7 @@ unsafe impl Described for BhrFilm {
         Field { name: "shadows", offset: offset_of!(BhrFilm, shadows), kind: Kind::Numbers(1) },
         Field { name: "grain", offset: offset_of!(BhrFilm, grain), kind: Kind::Numbers(1) },
         Field { name: "grain_seed", offset: offset_of!(BhrFilm, grain_seed), kind: Kind::Numbers(1) },
+        Field { name: "lut_strength", offset: offset_of!(BhrFilm, lut_strength), kind: Kind::Numbers(1) },
     ];
 }
 

@@ -4,12 +4,17 @@
 use super::call::on_context;
 use super::context::BhrContext;
 use super::entry::anywhere;
-use super::pointer::{check_reserved, unknown};
+use super::image::path_of;
+use super::pointer::{check_reserved, is_null, unknown};
+use super::state::State;
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
+use crate::image::{Lut, LutFile};
 use crate::scene::{AutoExposure, ColourMap, Film, Filmic, Grade, ToneMap};
+use std::ffi::c_char;
 use std::mem::offset_of;
+use std::sync::Arc;
 
 /// The curve from light to pixels.
 pub type BhrToneMap = i32;
@@ -33,7 +38,8 @@ pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
 /// radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
-/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve or the colour map, dithering.
+/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and
+/// the LUT, or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -110,12 +116,15 @@ pub struct BhrFilm {
     pub grain: f64,
     /// Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0
     pub grain_seed: f64,
+    /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+    /// @since 0.2.0
+    pub lut_strength: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 200];
+    const SIZES: &'static [usize] = &[24, 208];
     fn defaults() -> Self {
         Film::default().into()
     }
@@ -155,6 +164,7 @@ impl From<Film> for BhrFilm {
             shadows: film.shadows,
             grain: film.grade.grain,
             grain_seed: film.grade.grain_seed,
+            lut_strength: film.lut_strength,
         }
     }
 }
@@ -215,6 +225,7 @@ impl TryFrom<BhrFilm> for Film {
             auto_exposure,
             highlights,
             shadows,
+            lut_strength: given.lut_strength,
             glare_is_optional: false,
         };
         film.check()?;
@@ -249,4 +260,62 @@ pub unsafe extern "C" fn bhr_get_film(context: *const BhrContext, film: *mut Bhr
         let film = OutStruct::cleared(film, "film");
         on_context("bhr_get_film", context, |state| film.set(&state.renderer.scene.film.into()))
     }
+}
+
+/// Gives the film a LUT, a table of colours, copied before return: side^3 nodes of red, green and blue, red changing
+/// fastest, spread evenly over sRGB-encoded colours from 0 to 1, which become the nodes' colours, by tetrahedral
+/// interpolation between them, limited to 0 .. 1. side: 2 .. 65; count = 3 side^3, the number of floats; 0 takes the
+/// LUT away, and then nodes may be NULL. It works where the film does, but with no colour map, and stays when film or
+/// preset change. Black becomes what the LUT has for it, in transparent images as well. Memory: 16 bytes a node in the
+/// context and on the device. docs/colour-and-film.md.
+/// Errors: INVALID_ARGUMENT also for a node that is not finite; the LUT is then as it was. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_film_lut(
+    context: *mut BhrContext,
+    nodes: *const f32,
+    count: usize,
+    side: u32,
+) -> BhrStatus {
+    // SAFETY: NULL or count floats, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_film_lut", context, |state| {
+            let lut = match count {
+                0 => None,
+                _ if nodes.is_null() => return Err(is_null("nodes")),
+                _ => {
+                    // The host's memory is read once side and count fit.
+                    let numbers = (0..count).map(|index| nodes.add(index).read_unaligned());
+                    Some(Arc::new(Lut::new(side, numbers)?))
+                }
+            };
+            (state.renderer.scene.film_lut, state.files.lut) = (lut, None);
+            Ok(())
+        })
+    }
+}
+
+/// Gives the film the LUT in a .cube file (Adobe's Cube LUT Specification 1.0), as bhr_set_film_lut does one in
+/// memory; over its DOMAIN_MIN and DOMAIN_MAX, or LUT_3D_INPUT_RANGE, beyond which colours become those at the edge.
+/// The path is kept, so that bhr_scene_save can name it; a file that is given again and has not changed is not read
+/// again.
+/// Errors, after which the LUT is as it was: IO, with the line, for a file that is not there, not readable, not UTF-8,
+/// larger than 32 MiB, or no LUT of three dimensions and 2 to 65 nodes a side. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_film_lut_file(context: *mut BhrContext, path: *const c_char) -> BhrStatus {
+    // SAFETY: NULL or a C string, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_film_lut_file", context, |state| {
+            let path = path_of(path)?;
+            let path = std::path::absolute(&path).unwrap_or(path);
+            let lut = LutFile::load(&path, state.files.lut.as_ref())?;
+            show_lut(state, Some(lut));
+            Ok(())
+        })
+    }
+}
+
+/// Shows the LUT of a file, or none.
+pub(super) fn show_lut(state: &mut State, lut: Option<LutFile>) {
+    state.renderer.scene.film_lut = lut.as_ref().map(|lut| lut.value().clone());
+    state.files.lut = lut;
 }

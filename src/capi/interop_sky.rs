@@ -56,6 +56,6 @@ unsafe fn set(state: &mut State, target: *const BhrTarget, cube: bool) -> Result
         Some(target) => state.renderer.set_sky_target(&target.target, cube)?,
         None => (state.renderer.scene.sky_map, state.renderer.scene.sky_picture) = (None, None),
     }
-    state.sky_map_file = None;
+    state.files.map = None;
     Ok(())
 }

@@ -3,14 +3,15 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::film;
 use super::image::path_of;
 use super::pointer::{Out, check_finite, is_null};
 use super::scene_file::{MOST_BYTES, Moment, SceneFile};
 use super::sky;
-use super::state::{Loaded, Pictures, State};
+use super::state::{Files, Loaded, Pictures, State};
 use super::status::BhrStatus;
 use crate::error::{Error, Result};
-use crate::image;
+use crate::image::{self, LutFile};
 use crate::scene::{Region, Scene};
 use crate::sky::MapFile;
 use std::ffi::c_char;
@@ -22,14 +23,8 @@ impl Loaded for SceneFile {
         Ok((scene, region))
     }
 
-    fn text(
-        &self,
-        scene: &Scene,
-        region: Option<Region>,
-        map: Option<&MapFile>,
-        folder: Option<&Path>,
-    ) -> Result<String> {
-        self.updated(scene, region, map)?.text(folder)
+    fn text(&self, scene: &Scene, region: Option<Region>, files: &Files, folder: Option<&Path>) -> Result<String> {
+        self.updated(scene, region, files)?.text(folder)
     }
 
     fn pictures(&self) -> Pictures {
@@ -38,13 +33,15 @@ impl Loaded for SceneFile {
     }
 }
 
-/// Shows what a file has, at its beginning. Errors: as [`SceneFile::at`] and [`MapFile::load`]; the state is then as it
-/// was.
+/// Shows what a file has, at its beginning. Errors: as [`SceneFile::at`], [`MapFile::load`] and [`LutFile::load`]; the
+/// state is then as it was.
 fn show(state: &mut State, file: SceneFile) -> Result<()> {
-    let map = file.map().map(|path| MapFile::load(path, state.sky_map_file.as_ref())).transpose()?;
+    let map = file.map().map(|path| MapFile::load(path, state.files.map.as_ref())).transpose()?;
+    let lut = file.lut().map(|path| LutFile::load(path, state.files.lut.as_ref())).transpose()?;
     let Moment { scene, region } = file.at(0.0, &state.renderer.scene)?;
     state.renderer.scene = scene;
     sky::show_map(state, map);
+    film::show_lut(state, lut);
     state.region = region;
     state.loaded = Some(Box::new(file));
     Ok(())
@@ -52,10 +49,10 @@ fn show(state: &mut State, file: SceneFile) -> Result<()> {
 
 /// The text of the scene as it is set, with what moves in it.
 fn text_of(state: &State, folder: Option<&Path>) -> Result<String> {
-    let (scene, map) = (&state.renderer.scene, state.sky_map_file.as_ref());
+    let State { renderer, region, files, .. } = state;
     match &state.loaded {
-        Some(loaded) => loaded.text(scene, state.region, map, folder),
-        None => SceneFile::of(scene, state.region, map)?.text(folder),
+        Some(loaded) => loaded.text(&renderer.scene, *region, files, folder),
+        None => SceneFile::of(&renderer.scene, *region, files)?.text(folder),
     }
 }
 
@@ -71,7 +68,8 @@ fn loaded(state: &State) -> Result<&dyn Loaded> {
 /// alone.
 /// Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
 /// unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE and
-/// UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0
+/// UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for map and LUT.
+/// @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_scene_load(context: *mut BhrContext, text: *const c_char, size: usize) -> BhrStatus {
     // SAFETY: NULL or size readable bytes, by the header's conventions.
@@ -171,8 +169,8 @@ pub unsafe extern "C" fn bhr_scene_pictures(
 /// text that was loaded last is written as it was read, so that the scene that is read is that of 0 seconds. Occluders
 /// are not part of it; paths are absolute.
 /// Errors: INVALID_ARGUMENT for a buffer of fewer than *out_size + 1 bytes, which then stays as it was; UNSUPPORTED
-/// for a map of the sky whose path is not UTF-8, or that has none: one of bhr_set_sky_map or bhr_set_sky_target.
-/// @since 0.2.0
+/// for a map of the sky or a LUT whose path is not UTF-8, or that has none: one that was set from memory or by
+/// bhr_set_sky_target. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_scene_save(
     context: *const BhrContext,
@@ -200,8 +198,8 @@ pub unsafe extern "C" fn bhr_scene_save(
     }
 }
 
-/// Writes the scene as it is set to a file, as bhr_scene_save does to memory. The path of a map in the file's folder,
-/// or below it, is relative to that. A file is replaced as bhr_image_save does it.
+/// Writes the scene as it is set to a file, as bhr_scene_save does to memory. Paths of a map and a LUT in the file's
+/// folder, or below it, are relative to that. A file is replaced as bhr_image_save does it.
 /// Errors: UNSUPPORTED as bhr_scene_save; IO. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_scene_save_file(context: *const BhrContext, path: *const c_char) -> BhrStatus {

@@ -136,7 +136,7 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
                 true => None,
                 false => Some(Arc::new(SkyMap::new(&image::read(equirect, "equirect")?.pixels.as_image_ref())?)),
             };
-            (state.renderer.scene.sky_picture, state.sky_map_file) = (None, None);
+            (state.renderer.scene.sky_picture, state.files.map) = (None, None);
             Ok(())
         })
     }
@@ -152,7 +152,7 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
         on_context("bhr_set_sky_map_file", context, |state| {
             let path = path_of(path)?;
             let path = std::path::absolute(&path).unwrap_or(path);
-            let map = MapFile::load(&path, state.sky_map_file.as_ref())?;
+            let map = MapFile::load(&path, state.files.map.as_ref())?;
             show_map(state, Some(map));
             Ok(())
         })
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
 
 /// Shows the map of a file, or none.
 pub(super) fn show_map(state: &mut State, map: Option<MapFile>) {
-    state.renderer.scene.sky_map = map.as_ref().map(|map| map.map().clone());
+    state.renderer.scene.sky_map = map.as_ref().map(|map| map.value().clone());
     state.renderer.scene.sky_picture = None;
-    state.sky_map_file = map;
+    state.files.map = map;
 }

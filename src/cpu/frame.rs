@@ -13,6 +13,7 @@ use crate::allocate::filled;
 use crate::emit::half::Evenness;
 use crate::error::Result;
 use crate::film::{FilmParams, develop_row};
+use crate::image::Lut;
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
@@ -32,6 +33,7 @@ pub struct Frame<'a> {
     /// Refines pixels with edges; `None` where values of views are shown, which are not to be averaged.
     refiner: Option<Refiner<'a>>,
     pub film: FilmParams,
+    lut: Option<&'a Lut>,
     request: &'a FrameRequest,
     pub samples: u32,
 }
@@ -56,6 +58,7 @@ impl<'a> Frame<'a> {
             None => RecordSource::Traced(recorder),
         };
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };
+        let lut = scene.shown_lut().map(Arc::as_ref);
         Ok(Self {
             lens,
             source: source(Recorder::new(scene, lens, &structure)),
@@ -65,7 +68,9 @@ impl<'a> Frame<'a> {
                 .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens, &structure)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent)
-                .over_frame(request.region.full_width, request.region.full_height),
+                .over_frame(request.region.full_width, request.region.full_height)
+                .with_lut(lut, &scene.film),
+            lut,
             request,
             samples,
         })
@@ -117,7 +122,7 @@ impl<'a> Frame<'a> {
         let row_bytes = width * self.request.format.bytes_per_pixel();
         let mut pixels = filled(row_bytes * tile.height as usize, 0, "the pixels of a tile")?;
         pixels.par_chunks_mut(row_bytes).zip(sum.par_chunks(width)).enumerate().for_each(|(row, (out, sum))| {
-            develop_row(film, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
+            develop_row(film, self.lut, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
         });
         Ok(pixels)
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, a grade, tone map, the sRGB
-//! curve or a colour map, and dithering; float formats get the radiance as it is. Views other than light get false
-//! colour, or their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step
-//! of 8 bits. Knows nothing of how light was made.
+//! curve and a LUT or a colour map, and dithering; float formats get the radiance as it is. Views other than light get
+//! false colour, or their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one
+//! step of 8 bits. Knows nothing of how light was made.
 
 pub mod bloom;
 pub(crate) mod colour_map;
@@ -13,15 +13,17 @@ pub(crate) mod grade;
 pub(crate) mod filmic;
 pub(crate) mod metering;
 pub(crate) mod whole;
+pub(crate) mod lut;
 
-use crate::image::PixelFormat;
+use crate::image::{Lut, PixelFormat};
 use crate::scene::{ColourMap, Film, ToneMap, View};
 use arrayvec::ArrayVec;
 use filmic::FilmicParams;
 use grade::GradeParams;
+use lut::LutParams;
 use tone_map::MAX_SCENE_LIGHT;
 
-/// The properties of a frame that film needs: the uniform `film` of the shader, 176 bytes.
+/// The properties of a frame that film needs: the uniform `film` of the shader, 208 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct FilmParams {
@@ -43,6 +45,7 @@ pub struct FilmParams {
     pub colour_map: u32,
     pub grade: GradeParams,
     pub filmic: FilmicParams,
+    pub lut: LutParams,
 }
 
 impl FilmParams {
@@ -60,12 +63,18 @@ impl FilmParams {
             colour_map: film.colour_map as u32,
             grade: GradeParams::new(&film.grade),
             filmic: FilmicParams::new(&film.filmic),
+            lut: LutParams::default(),
         }
     }
 
     /// In a whole frame of this size in pixels, which a vignette goes by.
     pub fn over_frame(self, width: u32, height: u32) -> Self {
         Self { grade: self.grade.over_frame(width, height), ..self }
+    }
+
+    /// With a LUT behind the sRGB curve, if there is one (`Scene::shown_lut`).
+    pub fn with_lut(self, lut: Option<&Lut>, film: &Film) -> Self {
+        Self { lut: lut.map(|lut| LutParams::new(lut, film.lut_strength)).unwrap_or_default(), ..self }
     }
 
     /// The parameters for the sum of a frame with bloom, whose light was exposed before it spread.
@@ -121,16 +130,21 @@ pub type PackedPixel = ArrayVec<u8, 16>;
 
 /// One pixel of the frame: a row of one, as `develop_row`.
 pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> PackedPixel {
+    develop_through(params, None, radiance, x, y)
+}
+
+/// One pixel of the frame, with a LUT.
+pub fn develop_through(params: &FilmParams, lut: Option<&Lut>, radiance: [f32; 4], x: u32, y: u32) -> PackedPixel {
     let mut bytes = [0; 16];
     let length = params.pixel_format().bytes_per_pixel();
-    develop_row(params, &[radiance.map(f64::from)], x, y, &mut bytes[..length]);
+    develop_row(params, lut, &[radiance.map(f64::from)], x, y, &mut bytes[..length]);
     bytes[..length].iter().copied().collect()
 }
 
 /// Pixels of the frame, side by side, into their bytes. `radiance`: linear Rec. 709, premultiplied, and alpha; for a
 /// view, its value first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that
-/// tiles join without a seam.
-pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
+/// tiles join without a seam. `lut`: the one that the parameters were made with.
+pub fn develop_row(params: &FilmParams, lut: Option<&Lut>, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
     use PixelFormat::{Bgra8Srgb, R32F, Rgba8Srgb, Rgba16F, Rgba32F};
     match (params.pixel_format(), params.false_colour != 0, params.tone_map_kind()) {
         (Rgba16F, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
@@ -139,47 +153,64 @@ pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, o
         (Rgba8Srgb | Bgra8Srgb, true, _) => {
             write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]);
         }
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::None) => write_light(params, radiance, x, y, out, tone_map::clip),
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Aces) => write_light(params, radiance, x, y, out, tone_map::aces),
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Agx) => write_light(params, radiance, x, y, out, tone_map::agx),
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Filmic) => {
-            write_light(params, radiance, x, y, out, |scene| filmic::filmic(&params.filmic, scene));
+        (Rgba8Srgb | Bgra8Srgb, false, tone_map) => {
+            let row = LightRow { params, lut, radiance, x, y };
+            match tone_map {
+                ToneMap::None => row.write(out, tone_map::clip),
+                ToneMap::Aces => row.write(out, tone_map::aces),
+                ToneMap::Agx => row.write(out, tone_map::agx),
+                ToneMap::Filmic => row.write(out, |scene| filmic::filmic(&params.filmic, scene)),
+            }
         }
     }
 }
 
-/// Writes light in 8 bits, as it is or graded.
-fn write_light(
-    params: &FilmParams,
-    radiance: &[[f64; 4]],
+/// Pixels of light that are to be written in 8 bits.
+struct LightRow<'a> {
+    params: &'a FilmParams,
+    lut: Option<&'a Lut>,
+    radiance: &'a [[f64; 4]],
     x: u32,
     y: u32,
-    out: &mut [u8],
-    tone_map: impl Fn([f32; 3]) -> [f32; 3],
-) {
-    if params.grade.graded == 0 {
-        write_graded(params, radiance, x, y, out, tone_map, |scene, _| scene);
-    } else {
-        write_graded(params, radiance, x, y, out, tone_map, |scene, x| grade::graded(&params.grade, scene, x, y));
-    }
 }
 
-/// Writes light in 8 bits: its own colours, or those of a map for its luminance. `grade`: of exposed light at an x.
-fn write_graded(
-    params: &FilmParams,
-    radiance: &[[f64; 4]],
-    x: u32,
-    y: u32,
-    out: &mut [u8],
-    tone_map: impl Fn([f32; 3]) -> [f32; 3],
-    grade: impl Fn([f32; 3], u32) -> [f32; 3],
-) {
-    if params.colour_map == ColourMap::Afmhot as u32 {
-        let colour = |scene| colour_map::afmhot(tone_map([colour_map::luminance(scene); 3])[0]);
-        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, |scene| colour(grade(scene, x)))]);
-    } else {
-        let colour = |scene| tone_map(scene).map(srgb_encode);
-        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, |scene| colour(grade(scene, x)))]);
+impl LightRow<'_> {
+    /// Writes light as it is or graded.
+    fn write(&self, out: &mut [u8], tone_map: impl Fn([f32; 3]) -> [f32; 3]) {
+        let (grade, y) = (&self.params.grade, self.y);
+        if grade.graded == 0 {
+            self.write_graded(out, tone_map, |scene, _| scene);
+        } else {
+            self.write_graded(out, tone_map, |scene, x| grade::graded(grade, scene, x, y));
+        }
+    }
+
+    /// Writes light: its own colours, those that a LUT has for them, or those of a map for its luminance. `grade`: of
+    /// exposed light at an x.
+    fn write_graded(
+        &self,
+        out: &mut [u8],
+        tone_map: impl Fn([f32; 3]) -> [f32; 3],
+        grade: impl Fn([f32; 3], u32) -> [f32; 3],
+    ) {
+        let &Self { params, lut, .. } = self;
+        let lut = lut.filter(|_| params.lut.side != 0);
+        if params.colour_map == ColourMap::Afmhot as u32 {
+            let colour = |scene| colour_map::afmhot(tone_map([colour_map::luminance(scene); 3])[0]);
+            self.write_colours(out, |scene, x| colour(grade(scene, x)));
+        } else if let Some(lut) = lut {
+            let colour = |scene| lut::through_lut(&params.lut, lut.nodes(), tone_map(scene).map(srgb_encode));
+            self.write_colours(out, |scene, x| colour(grade(scene, x)));
+        } else {
+            let colour = |scene| tone_map(scene).map(srgb_encode);
+            self.write_colours(out, |scene, x| colour(grade(scene, x)));
+        }
+    }
+
+    /// `colour`: of exposed light at an x, sRGB-encoded.
+    fn write_colours(&self, out: &mut [u8], colour: impl Fn([f32; 3], u32) -> [f32; 3]) {
+        let &Self { params, radiance, x, y, .. } = self;
+        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, |scene| colour(scene, x))]);
     }
 }
 

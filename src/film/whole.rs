@@ -7,7 +7,7 @@ use super::metering::{MeterParams, Metered};
 use super::{FilmParams, develop_row};
 use crate::allocate::{collected, filled};
 use crate::error::Result;
-use crate::image::PixelFormat;
+use crate::image::{Lut, PixelFormat};
 use crate::scene::{Film, View};
 use rayon::prelude::*;
 
@@ -19,16 +19,16 @@ const LIGHT: &str = "the light of rows that are developed";
 /// Takes rows of packed pixels, by their first one.
 pub type RowSink<'a> = dyn FnMut(u32, &[u8]) -> Result<()> + 'a;
 
-/// Develops `light`, rows of `width`; the stops that auto exposure added. On the current pool. Errors: OUT_OF_MEMORY;
+/// Develops `light`, rows of `width`, with a LUT (`Scene::shown_lut`); the stops that auto exposure added. On the current pool. Errors: OUT_OF_MEMORY;
 /// those of the sink.
 pub fn develop_whole(
-    film: &Film,
+    (film, lut): (&Film, Option<&Lut>),
     (format, transparent): (PixelFormat, bool),
     [width, height]: [u32; 2],
     light: &[[f32; 4]],
     sink: &mut RowSink<'_>,
 ) -> Result<f64> {
-    let params = FilmParams::new(film, View::Light, format, transparent).over_frame(width, height);
+    let params = FilmParams::new(film, View::Light, format, transparent).over_frame(width, height).with_lut(lut, film);
     let bands = || light.chunks(ROWS * width as usize).zip((0..height).step_by(ROWS));
     let mut pixels = Vec::new();
     let mut deliver = |params: &FilmParams, y: u32, light: &[[f64; 4]]| {
@@ -38,7 +38,7 @@ pub fn develop_whole(
             pixels = filled(bytes, 0, "the pixels of rows that are developed")?;
         }
         let rows = pixels[..bytes].par_chunks_mut(row_bytes).zip(light.par_chunks(width as usize));
-        rows.zip(y..height).for_each(|((out, light), y)| develop_row(params, light, 0, y, out));
+        rows.zip(y..height).for_each(|((out, light), y)| develop_row(params, lut, light, 0, y, out));
         sink(y, &pixels[..bytes])
     };
     if !Bloom::is_shown(film, View::Light, format) {

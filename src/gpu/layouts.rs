@@ -16,7 +16,8 @@ fn shared() -> Vec<Layout> {
         view_scale, transparent, colour_map, graded = grade + 0, contrast = grade + 4, contrast_factor = grade + 8,
         saturation = grade + 12, vignette_centre = grade + 16, vignette_scale = grade + 24, vignette = grade + 28,
         white_balance = grade + 32, grain = grade + 80, grain_cells = grade + 84, grain_seed = grade + 88,
-        unused = grade + 92, filmic_toe = filmic + 0, filmic_line = filmic + 16, filmic_shoulder = filmic + 32);
+        unused = grade + 92, filmic_toe = filmic + 0, filmic_line = filmic + 16, filmic_shoulder = filmic + 32,
+        lut_low = lut + 0, lut_side = lut + 12, lut_scale = lut + 16, lut_strength = lut + 28);
     let [scene, pass] = frame::layouts();
     let [given, start, end] = rays::layouts();
     let [level, beam] = bloom_textures::layouts();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Pixels in memory and in files: formats, strides, and reading and writing image files. Knows neither scenes nor
-//! tracers.
+//! Pixels in memory and in files: formats, strides, and reading and writing image files; and tables of colours. Knows
+//! neither scenes nor tracers.
 
 mod copiers;
 pub mod memory;
+mod kept;
+mod lut;
 pub mod file;
 
 pub use copiers::Copiers;
@@ -13,4 +15,6 @@ pub use file::{
 };
 #[cfg(feature = "exr")]
 pub use file::{load_channels, save_channels};
+pub use kept::{FromFile, KeptFile};
+pub use lut::{Lut, LutFile};
 pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

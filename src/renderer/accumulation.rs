@@ -141,14 +141,14 @@ impl Renderer {
         if format == PixelFormat::R32F {
             return Err(Error::argument("format R32F holds views other than LIGHT, and light is what is accumulated"));
         }
-        let film = self.scene.film;
+        let (film, lut) = (self.scene.film, self.scene.shown_lut().cloned());
         let begun = self.begun_mut()?;
         let Accumulation { sum, next, pool, weight, .. } = begun;
         let share = (1.0 / *weight) as f32;
         let developed = pool.install(|| {
             next.par_iter_mut().zip(&*sum).with_min_len(4096).for_each(|(mean, sum)| *mean = sum.map(|v| v * share));
             let row_bytes = size[0] as usize * format.bytes_per_pixel();
-            develop_whole(&film, (format, transparent), size, next, &mut |y, pixels| {
+            develop_whole((&film, lut.as_deref()), (format, transparent), size, next, &mut |y, pixels| {
                 target.write_tile(0, y, size[0], (pixels.len() / row_bytes) as u32, pixels, row_bytes)
             })
         });

@@ -3,7 +3,7 @@
 
 use super::camera::Camera;
 use super::chart::Chart;
-use super::film::Film;
+use super::film::{ColourMap, Film};
 use super::frame::Region;
 use super::hole::Hole;
 use super::occluder::Occluder;
@@ -21,7 +21,7 @@ use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
 use crate::emit::{Emitters, Needs};
 use crate::error::{Error, Result};
-use crate::image::PixelFormat;
+use crate::image::{Lut, PixelFormat};
 use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarField, StarIndex};
@@ -89,6 +89,8 @@ pub struct Scene {
     /// A picture on the tracer's device that takes the place of `sky_map`.
     pub sky_picture: Option<SkyPicture>,
     pub film: Film,
+    /// Colours that take the places of developed ones: see `crate::film::lut`. `None`: these stay.
+    pub film_lut: Option<Arc<Lut>>,
     pub effects: Effects,
     /// How strongly those show that are on. Default all of them as physics has them.
     pub effect_strengths: EffectStrengths,
@@ -137,6 +139,7 @@ impl Default for Scene {
             sky_map: None,
             sky_picture: None,
             film: Film::default(),
+            film_lut: None,
             effects: Effects(Effects::ALL),
             effect_strengths: EffectStrengths::default(),
             time: 0.0,
@@ -191,6 +194,12 @@ impl Scene {
             return Volumes::default();
         }
         self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW })
+    }
+
+    /// The LUT that pixels of 8 bits go through. Colour maps and views have colours of their own, which mean something.
+    pub fn shown_lut(&self) -> Option<&Arc<Lut>> {
+        let developed = self.view == View::Light && self.film.colour_map == ColourMap::None;
+        self.film_lut.as_ref().filter(|_| developed && self.film.lut_strength > 0.0)
     }
 
     /// How strongly effects show: the strengths of those that are on.

@@ -134,6 +134,8 @@ pub struct Film {
     pub highlights: f64,
     /// The share of their stops below middle grey that dark parts lose, 0 off (default) .. 1.
     pub shadows: f64,
+    /// The share of what the LUT (`Scene::film_lut`) makes of colours, 0 .. 1. Default 1.
+    pub lut_strength: f64,
     /// Whether frames of a region, which cannot have glare, go without it; else they fail. True (default) until a host
     /// states a film of its own: those that never asked for glare are to get their tiles.
     pub glare_is_optional: bool,
@@ -152,6 +154,7 @@ impl Default for Film {
             auto_exposure: AutoExposure::default(),
             highlights: 0.0,
             shadows: 0.0,
+            lut_strength: 1.0,
             glare_is_optional: true,
         }
     }
@@ -195,6 +198,7 @@ impl Film {
             ("auto_adaptation", auto.adaptation, SLOWEST_ADAPTATION, 1.0),
             ("highlights", self.highlights, 0.0, 1.0),
             ("shadows", self.shadows, 0.0, 1.0),
+            ("lut_strength", self.lut_strength, 0.0, 1.0),
         ] {
             if !(low..=high).contains(&value) {
                 return Err(out_of_range(&format!("film {name}"), value, low, high));

@@ -298,6 +298,12 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, grain_seed), NAN, "grain_seed"},
         {offsetof(BhrFilm, grain_seed), INFINITY, "grain_seed"},
         {offsetof(BhrFilm, grain_seed), -INFINITY, "grain_seed"},
+        {offsetof(BhrFilm, lut_strength), -0.01, "lut_strength"},
+        {offsetof(BhrFilm, lut_strength), 1.01, "lut_strength"},
+        {offsetof(BhrFilm, lut_strength), -5e-324, "lut_strength"},
+        {offsetof(BhrFilm, lut_strength), NAN, "lut_strength"},
+        {offsetof(BhrFilm, lut_strength), INFINITY, "lut_strength"},
+        {offsetof(BhrFilm, lut_strength), -INFINITY, "lut_strength"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));

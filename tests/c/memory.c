@@ -140,6 +140,10 @@ static void skies(BhrContext *context) {
         TOOK(bhr_set_sky(context, &sky));
         frame(context, BHR_FORMAT_RGBA8_SRGB, 64, 36);
         TOOK(bhr_set_sky_map(context, NULL));
+        static const float nodes[24];
+        TOOK(bhr_set_film_lut(context, nodes, 24, 2));
+        frame(context, BHR_FORMAT_RGBA8_SRGB, 64, 36);
+        TOOK(bhr_set_film_lut(context, NULL, 0, 0));
         sky.flags = BHR_SKY_STARS | BHR_SKY_PROCEDURAL;
         TOOK(bhr_set_sky(context, &sky));
         frame(context, BHR_FORMAT_RGBA8_SRGB, 64, 36);

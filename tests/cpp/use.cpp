@@ -265,6 +265,9 @@ static void frames(const std::string &folder) {
     EXPECT(!context.load_scene("[hole]\nspin = 2") && context.time().value() == 4.0);
     EXPECT(!context.load_scene_file("nowhere.toml") && !context.set_sky_map_file("nowhere.png"));
     EXPECT(!context.save_scene_file("nowhere/scene.toml"));
+    const std::vector<float> grey(3 * 2 * 2 * 2, 0.5f);
+    EXPECT(!context.set_film_lut_file("nowhere.cube") && !context.set_film_lut(grey, 3));
+    EXPECT(context.set_film_lut(grey, 2) && context.set_film_lut({}, 0));
     EXPECT(context.load_scene(text) && context.save_scene().value() == text);
     EXPECT(context.render(WIDTH, 0).status() == bhr::StatusCode::invalid_argument);
     EXPECT(context.render(1u << 21, 1).status() == bhr::StatusCode::invalid_argument);

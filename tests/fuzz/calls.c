@@ -193,6 +193,7 @@ static void scene_call(BhrContext *context) {
     BhrSky    sky;
     BhrPresetOptions options;
     BhrFilm   film;
+    float     nodes[192];
     BhrVolume  volumes[2];
     BhrHotSpot spots[2];
     switch (byte() % 19) {
@@ -274,7 +275,12 @@ static void scene_call(BhrContext *context) {
         film.shadows = number();
         film.grain = number();
         film.grain_seed = number();
+        film.lut_strength = number();
         check(bhr_set_film(context, &film));
+        for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {
+            nodes[i] = byte() < 255 ? byte() / 255.0f : (float)number();
+        }
+        check(bhr_set_film_lut(context, byte() < 250 ? nodes : NULL, mostly(24, byte() % 193), mostly(2, byte())));
         break;
     case 8: check(bhr_set_time(context, number())); break;
     case 9: /* AUTO would take a while */

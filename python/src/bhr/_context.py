@@ -350,7 +350,8 @@ class Context(SceneText, Tracing):
 
     def set_effect_strength(self, effects: Effects | str, strength: float) -> None:
         """Sets how strongly the Doppler shift, gravity's shift or beaming show, 0 to 1 (bhr_set_effect_strength)."""
-        self._set(lib.bhr_set_effect_strength, flags(Effects, effects, "effects"), strength)
+        with self._gate as context:
+            check(lib.bhr_set_effect_strength(context, flags(Effects, effects, "effects"), strength))
 
     def set_preset(self, preset: PresetLike) -> None:
         """Gives disk, sky, film and effects the values of a named look."""

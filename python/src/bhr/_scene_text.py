@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The part of a context that reads and writes its scene as text, sets what moves in it, and takes the sky's map."""
+"""The part of a context that reads and writes its scene as text, sets what moves in it, and takes the sky's map and the
+film's LUT."""
 
 from __future__ import annotations
 
@@ -101,3 +102,22 @@ class SceneText:
             raise TypeError(f"a sky map is a path, a bhr.Frame or a numpy array, not {type(picture).__name__}")
         self._call(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
         self._targets.pop("sky", None)
+
+    def set_film_lut(self, lut: str | os.PathLike[str] | npt.NDArray[Any] | None) -> None:
+        """Gives the film a LUT, a table of colours that take the places of the picture's, which is copied: a .cube
+        file, whose path is part of what `save` writes, or a numpy array of shape (side, side, side, 3) with side 2 to
+        65, whose element [b, g, r] is what the sRGB-encoded colour (r, g, b) / (side - 1) becomes; None takes it
+        away."""
+        if isinstance(lut, (str, os.PathLike)):
+            self._call(lib.bhr_set_film_lut_file, _path(lut))
+            return
+        nodes: npt.NDArray[np.float32] = np.zeros(0, np.float32)
+        side = 0
+        if isinstance(lut, np.ndarray):
+            nodes, side = np.ascontiguousarray(lut, np.float32), len(lut) if lut.ndim > 0 else 0
+            if nodes.shape != (side, side, side, 3):
+                raise ValueError(f"a LUT has the shape (side, side, side, 3), not {lut.shape}")
+        elif lut is not None:
+            raise TypeError(f"a LUT is a path or a numpy array, not {type(lut).__name__}")
+        with self._gate as context:
+            check(lib.bhr_set_film_lut(context, ffi.from_buffer("float[]", nodes), nodes.size, side))

@@ -58,6 +58,8 @@ pub fn parameters(made: &Made) -> Vec<(String, Attribute)> {
     if values.disk.is_none() {
         list.push(("bhr.disk".into(), Attribute::Text("NONE".into())));
     }
-    list.push(("bhr.sky.has_map".into(), Attribute::Number(f64::from(u8::from(made.has_map())))));
+    for (name, is_there) in [("bhr.sky.has_map", made.has_map()), ("bhr.film.has_lut", made.has_lut())] {
+        list.push((name.into(), Attribute::Number(f64::from(u8::from(is_there)))));
+    }
     list
 }

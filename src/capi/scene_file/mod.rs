@@ -11,12 +11,13 @@ mod attributes;
 #[cfg(test)]
 mod tests;
 
+use super::state::Files;
 use crate::error::{Error, Result};
-use crate::image;
+use crate::image::{self, KeptFile};
 use crate::scene::{Region, Scene};
-use crate::sky::MapFile;
 pub use attributes::parameters;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use tracks::Track;
 pub use values::Render;
 use values::{Misfit, Section, Values};
@@ -33,6 +34,7 @@ pub struct SceneFile {
     values: Values,
     tracks: Vec<Track>,
     map: Option<PathBuf>,
+    lut: Option<PathBuf>,
 }
 
 /// A scene at a moment, with what a context holds beside it.
@@ -57,25 +59,18 @@ impl SceneFile {
     }
 
     /// The scene as it is, without anything that moves.
-    pub fn of(scene: &Scene, region: Option<Region>, map: Option<&MapFile>) -> Result<Self> {
-        let map = match (&scene.sky_map, map) {
-            (None, _) => None,
-            (Some(shown), Some(file)) if file.is_of(shown) => Some(file.path().to_owned()),
-            (Some(_), _) => {
-                return Err(Error::unsupported(
-                    "the sky's map has no path, as it was set from memory: set it by bhr_set_sky_map_file instead",
-                ));
-            }
-        };
+    pub fn of(scene: &Scene, region: Option<Region>, files: &Files) -> Result<Self> {
+        let map = path_of(scene.sky_map.as_ref(), files.map.as_ref(), ["the sky's map", "bhr_set_sky_map_file"])?;
+        let lut = path_of(scene.film_lut.as_ref(), files.lut.as_ref(), ["the film's LUT", "bhr_set_film_lut_file"])?;
         if scene.sky_picture.is_some() {
             return Err(Error::unsupported("the sky's map is a target on the GPU, which has no path"));
         }
-        Ok(Self { values: Values::of(scene, region), tracks: Vec::new(), map })
+        Ok(Self { values: Values::of(scene, region), tracks: Vec::new(), map, lut })
     }
 
     /// The scene as it is; what moves in `self` moves on, and is as it was read.
-    pub fn updated(&self, scene: &Scene, region: Option<Region>, map: Option<&MapFile>) -> Result<Self> {
-        let mut now = Self::of(scene, region, map)?;
+    pub fn updated(&self, scene: &Scene, region: Option<Region>, files: &Files) -> Result<Self> {
+        let mut now = Self::of(scene, region, files)?;
         now.values.render = self.values.render;
         self.put_shots(&mut now.values);
         let is_there = |track: &&Track| now.values.bytes(track.section).is_some();
@@ -89,11 +84,11 @@ impl SceneFile {
         write::write(self, folder)
     }
 
-    /// The text without what decides pixels by its content, or by the moment: the path of the map, and the pictures
-    /// that are asked for. For fingerprints.
+    /// The text without what decides pixels by its content, or by the moment: the paths of the map and the LUT, and the
+    /// pictures that are asked for. For fingerprints.
     pub fn text_of_pixels(&self) -> Result<String> {
         let mut bare = self.clone();
-        (bare.map, bare.values.render) = (None, None);
+        (bare.map, bare.lut, bare.values.render) = (None, None, None);
         bare.text(None)
     }
 
@@ -105,6 +100,11 @@ impl SceneFile {
     /// The file of the sky's map.
     pub fn map(&self) -> Option<&Path> {
         self.map.as_deref()
+    }
+
+    /// The file of the film's LUT.
+    pub fn lut(&self) -> Option<&Path> {
+        self.lut.as_deref()
     }
 
     /// Whether anything is another at another time.
@@ -140,7 +140,8 @@ impl SceneFile {
         }
     }
 
-    /// The whole scene at a time, in seconds. What no text holds (the sky's map, occluders) is that of `scene`. Errors:
+    /// The whole scene at a time, in seconds. What no text holds (the sky's map, the LUT, occluders) is that of
+    /// `scene`. Errors:
     /// as [`Self::parse`], without line and column.
     pub fn at(&self, seconds: f64, scene: &Scene) -> Result<Moment> {
         self.evaluated(self.values.clone(), seconds, scene).map_err(|misfit| explained(misfit, seconds))
@@ -166,6 +167,18 @@ impl SceneFile {
         }
         let (scene, region) = values.set_in(scene, seconds)?;
         Ok(Moment { scene, region })
+    }
+}
+
+/// The path of what a scene shows, `named` and set by a call; `None`: it shows none. Errors: UNSUPPORTED for what is
+/// from no file.
+fn path_of<T>(shown: Option<&Arc<T>>, file: Option<&KeptFile<T>>, [named, call]: [&str; 2]) -> Result<Option<PathBuf>> {
+    match (shown, file) {
+        (None, _) => Ok(None),
+        (Some(shown), Some(file)) if file.is_of(shown) => Ok(Some(file.path().to_owned())),
+        (Some(_), _) => {
+            Err(Error::unsupported(format!("{named} has no path, as it was set from memory: set it by {call} instead")))
+        }
     }
 }
 

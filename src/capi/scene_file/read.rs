@@ -17,7 +17,7 @@ use crate::image;
 use crate::scene::{HotSpot, Scene, Volume};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 use toml_parser::Source;
@@ -163,6 +163,16 @@ fn table<'g, 't>(name: &str, given: &'g Given<'t>) -> Checked<&'g DeTable<'t>> {
     given.get_ref().as_table().map_or_else(|| expected(name, "a table", given), Ok)
 }
 
+/// The path that a table has by a name, if it has one.
+fn path(name: &str, table: &Given<'_>, folder: &Path) -> Checked<Option<PathBuf>> {
+    let Some(given) = table.get_ref().get(name) else { return Ok(None) };
+    match given.get_ref().as_str() {
+        None => expected(name, "a path", given),
+        Some(text) if text.is_empty() || text.contains('\0') => mistake(given.span(), format!("{name} is no path")),
+        Some(text) => Ok(Some(folder.join(text))),
+    }
+}
+
 fn word<T: Copy>(name: &str, words: &[(&'static str, T)], given: &Given<'_>) -> Checked<T> {
     let known = || words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
     let Some(text) = given.get_ref().as_str() else { return expected(name, &format!("one of {}", known()), given) };
@@ -236,7 +246,7 @@ impl Reader {
             }
         }
         let mut values = Values::of(&base(given)?, None);
-        let mut map = None;
+        let (mut map, mut lut) = (None, None);
         let moment = Section::Moment;
         for (key, one) in given {
             match key.get_ref().as_ref() {
@@ -260,15 +270,12 @@ impl Reader {
                 }
                 "sky" => {
                     self.struct_of(&mut values, Section::Sky, one, &["map"])?;
-                    if let Some(path) = one.get_ref().get("map") {
-                        let Some(text) = path.get_ref().as_str() else { return expected("map", "a path", path) };
-                        if text.is_empty() || text.contains('\0') {
-                            return mistake(path.span(), "map is no path");
-                        }
-                        map = Some(folder.join(text));
-                    }
+                    map = path("map", one, folder)?;
                 }
-                "film" => self.film(&mut values, one)?,
+                "film" => {
+                    self.film(&mut values, one)?;
+                    lut = path("lut", one, folder)?;
+                }
                 "quality" => self.struct_of(&mut values, Section::Quality, one, &[])?,
                 "region" => {
                     values.region = Some(BhrRegion::defaults());
@@ -295,7 +302,7 @@ impl Reader {
                 format!("the scene has {keys} keys of {times} times; {MOST_KEYS} of {MOST_TIMES} are allowed");
             return mistake(0..0, message);
         }
-        Ok(SceneFile { values, tracks: std::mem::take(&mut self.tracks), map })
+        Ok(SceneFile { values, tracks: std::mem::take(&mut self.tracks), map, lut })
     }
 
     /// Sets the fields of a section's struct from a table, whose other keys are `more`.
@@ -423,7 +430,7 @@ impl Reader {
     }
 
     fn film(&mut self, values: &mut Values, given: &Given<'_>) -> Checked<()> {
-        self.struct_of(values, Section::Film, given, &["glare_is_optional"])?;
+        self.struct_of(values, Section::Film, given, &["glare_is_optional", "lut"])?;
         let has = |name: &str| given.get_ref().get(name).is_some();
         values.glare_is_optional &= !(has("bloom") || has("beam_fwhm"));
         if let Some(optional) = given.get_ref().get("glare_is_optional") {

@@ -4,6 +4,7 @@
 use super::values::{Section, Values};
 use super::{Moment, SceneFile};
 use crate::capi::fields::{Field, Kind, Value};
+use crate::capi::state::Files;
 use crate::error::ErrorKind;
 use crate::random::runs_all;
 use crate::scene::{Camera, Motion, Preset, PresetMatter, Region, Scene};
@@ -134,12 +135,12 @@ fn every_field_comes_back_bit_by_bit() {
     for _ in 0..500 {
         let given = random_values(&mut random);
         let (scene, region) = given.set_in(&Scene::default(), 0.0).unwrap_or_else(|(_, error)| panic!("{error}"));
-        let text = SceneFile::of(&scene, region, None).unwrap().text(None).unwrap();
+        let text = SceneFile::of(&scene, region, &Files::default()).unwrap().text(None).unwrap();
         let read = parsed(&text);
         same(&Values::of(&scene, region), &read.values);
         // Through the scene as well: the second text is the first one.
         let Moment { scene, region } = read.at(0.0, &Scene::default()).unwrap();
-        assert_eq!(SceneFile::of(&scene, region, None).unwrap().text(None).unwrap(), text);
+        assert_eq!(SceneFile::of(&scene, region, &Files::default()).unwrap().text(None).unwrap(), text);
     }
 }
 
@@ -235,6 +236,8 @@ fn mistakes_are_told_where_they_stand() {
             "cuts = [{ at = 2, camera = {} }, { at = 2, camera = {} }]",
             "at is 2; it must be later than the cut before, 2",
         ),
+        ("[film]\nlut = 3", "line 2, column 7: lut is an integer; it must be a path"),
+        ("[film]\nlut = ''", "line 2, column 7: lut is no path"),
         ("[sky]\nmap = 3", "line 2, column 7: map is an integer; it must be a path"),
         ("[sky]\norientation = [0, 0, 0, 2]", "line 2, column 15: [sky]: sky orientation has length 2"),
     ] {
@@ -299,10 +302,10 @@ fn what_moves_is_saved_as_it_was_loaded() {
         same(&Values::of(&there, None), &Values::of(&scene, None));
     }
     // At any moment the same text; what a setter has changed is in it.
-    assert_eq!(file.updated(&scene_at(&file, 0.0), None, None).unwrap().text(None).unwrap(), first);
+    assert_eq!(file.updated(&scene_at(&file, 0.0), None, &Files::default()).unwrap().text(None).unwrap(), first);
     scene.film.exposure_ev = 1.25;
     scene.hole.spin = 0.77;
-    let changed = file.updated(&scene, None, None).unwrap().text(None).unwrap();
+    let changed = file.updated(&scene, None, &Files::default()).unwrap().text(None).unwrap();
     assert!(changed.contains("exposure_ev = 1.25\n") && !changed.contains("0.77"), "{changed}");
     let moved = file.moved(0.0, &scene, None).unwrap().scene;
     assert_eq!((moved.film.exposure_ev, moved.hole.spin), (1.25, 0.1));
@@ -323,7 +326,7 @@ fn cameras_that_do_not_move_are_left_alone() {
     let mut scene = scene_at(&still, 0.0);
     let placed = scene.camera.position;
     assert!(scene.time > 3.0 && placed != DVec3::new(0.0, 30.0, 3.0), "{placed}");
-    let again = parsed(&still.updated(&scene, None, None).unwrap().text(None).unwrap());
+    let again = parsed(&still.updated(&scene, None, &Files::default()).unwrap().text(None).unwrap());
     same(&Values::of(&scene, None), &Values::of(&scene_at(&again, 7.0), None));
     scene.camera.position = DVec3::new(1.0, 2.0, 9.0);
     assert_eq!(still.moved(1.0, &scene, None).unwrap().scene.camera, scene.camera);
@@ -340,7 +343,7 @@ fn numbers_that_mean_nothing_come_back() {
     for fov_y in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         scene.camera.fov_y = fov_y;
         scene.camera.check().unwrap();
-        let text = SceneFile::of(&scene, None, None).unwrap().text(None).unwrap();
+        let text = SceneFile::of(&scene, None, &Files::default()).unwrap().text(None).unwrap();
         assert_eq!(scene_of(&text).camera.fov_y.to_bits(), fov_y.to_bits(), "{text}");
     }
 }

@@ -26,22 +26,33 @@ pub(super) fn write(file: &SceneFile, folder: Option<&Path>) -> Result<String> {
         write_section(file, section, &mut text);
         match section {
             Section::Volume(i) if file.values.of_preset == Some(i) => text += "of_preset = true\n",
-            Section::Film if file.values.glare_is_optional => text += "glare_is_optional = true\n",
-            Section::Sky => write_map(file, folder, &mut text)?,
+            Section::Film => {
+                if file.values.glare_is_optional {
+                    text += "glare_is_optional = true\n";
+                }
+                write_path(("lut", "the film's LUT"), file.lut.as_deref(), folder, &mut text)?;
+            }
+            Section::Sky => write_path(("map", "the sky's map"), file.map.as_deref(), folder, &mut text)?,
             _ => {}
         }
     }
     Ok(text)
 }
 
-fn write_map(file: &SceneFile, folder: Option<&Path>, text: &mut String) -> Result<()> {
-    let Some(map) = &file.map else { return Ok(()) };
-    let relative = folder.and_then(|folder| map.strip_prefix(folder).ok()).unwrap_or(map);
+/// Writes the path of a file, if there is one: its key, and what it holds, for messages.
+fn write_path(
+    (key, named): (&str, &str),
+    given: Option<&Path>,
+    folder: Option<&Path>,
+    text: &mut String,
+) -> Result<()> {
+    let Some(given) = given else { return Ok(()) };
+    let relative = folder.and_then(|folder| given.strip_prefix(folder).ok()).unwrap_or(given);
     let Some(path) = relative.to_str() else {
         let path = relative.display();
-        return Err(Error::unsupported(format!("the path of the sky's map, {path}, is not UTF-8, which scenes are")));
+        return Err(Error::unsupported(format!("the path of {named}, {path}, is not UTF-8, which scenes are")));
     };
-    *text += &format!("map = {}\n", quoted(path));
+    *text += &format!("{key} = {}\n", quoted(path));
     Ok(())
 }
 

@@ -175,6 +175,7 @@ table! {
     TONE_MAP: [0, 1, 2, 3, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
     COLOUR_MAP: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
     GRADE: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
+    LUT: FLAG, FILM, only EIGHT_BIT, TONED;
     // The bloom's cells, in pixels, of frames up to 16384 x 8192.
     STEP: [2, 4, 6, 8], GATHER | GLARE;
     GRID: FLAG, GATHER;

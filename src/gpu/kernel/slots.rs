@@ -68,6 +68,10 @@ pub const FILAMENTS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R16Float, dimension: wgpu::TextureViewDimension::D3 };
 pub const BAKED: TextureKind = FILAMENTS;
 
+/// `film_lut` of film/lut.wgsl.
+pub const LUT: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D3 };
+
 /// `milky_way` and `sky_map` of shade/shade.wgsl.
 pub const SKY_MAP: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
@@ -118,9 +122,10 @@ impl PixelTarget {
                 dimension: SCREEN.dimension,
             }),
             Self::Packed | Self::Rows => Slot::Write,
-            Self::Light => Slot::TextureWrite(LIGHT),
+            // Light is developed later, by another kernel.
+            Self::Light => return vec![Slot::Uniform, Slot::TextureWrite(LIGHT)],
         };
-        vec![Slot::Uniform, pixels]
+        vec![Slot::Uniform, pixels, Slot::Texture(LUT)]
     }
 }
 

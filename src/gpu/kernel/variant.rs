@@ -5,7 +5,7 @@
 use super::choices::{Choice, FROM_UNIFORM, Values, Variant};
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, RayOutput, ToneMap, View};
+use crate::scene::{ColourMap, MOST_OUTPUTS, Projection, RayOutput, Scene, ToneMap, View};
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
@@ -179,6 +179,8 @@ variant! {
         COLOUR_MAP pub(in crate::gpu) colour_map: Option<ColourMap>,
         /// Whether light is graded. `None`: the kernel asks while it runs.
         GRADE pub(in crate::gpu) grade: Option<bool>,
+        /// Whether developed colours go through a LUT.
+        LUT pub(in crate::gpu) lut: bool,
         ;
         pub(in crate::gpu) target: PixelTarget,
     }
@@ -263,19 +265,21 @@ pub const SKY_SOURCE_FLOAT: u32 = 1;
 pub const SKY_SOURCE_LEVEL: u32 = 2;
 
 impl FilmVariant {
-    /// For `film` in pixels of `format`.
-    pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget) -> Self {
+    /// For the film of `scene` in pixels of `format`.
+    pub fn new(scene: &Scene, format: PixelFormat, target: PixelTarget) -> Self {
+        let Scene { film, view, .. } = scene;
         let pixels = match format {
             PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelKind::EightBit,
             PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
             PixelFormat::R32F => PixelKind::R32F,
         };
         let (tone_map, colour_map, grade) = (Some(film.tone_map), Some(film.colour_map), Some(film.grade.is_on()));
-        Self { pixels: Some(pixels), false_colour: view != View::Light, tone_map, colour_map, grade, target }
+        let (false_colour, lut) = (*view != View::Light, scene.shown_lut().is_some());
+        Self { pixels: Some(pixels), false_colour, tone_map, colour_map, grade, lut, target }
     }
 
     /// The variant that serves every tone map, colour map and grade, and, but in images, which have one kind of pixels,
-    /// every format.
+    /// every format. Light with a LUT has kernels of its own, so that other films pay nothing for it.
     pub fn of_any(self) -> Self {
         let pixels = self.pixels.filter(|_| self.target.is_image());
         Self { pixels, tone_map: None, colour_map: None, grade: None, ..self }
@@ -285,6 +289,7 @@ impl FilmVariant {
     /// ACES without a grade, the default.
     pub fn is_usual(self) -> bool {
         let plain = self.colour_map == Some(ColourMap::None) && self.grade == Some(false) && !self.false_colour;
+        let plain = plain && !self.lut;
         self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces) && plain
     }
 
@@ -292,7 +297,7 @@ impl FilmVariant {
     pub fn of_light() -> Self {
         let (tone_map, colour_map, grade) = (Some(ToneMap::None), Some(ColourMap::None), Some(false));
         let (pixels, target) = (Some(PixelKind::Float), PixelTarget::Light);
-        Self { pixels, false_colour: false, tone_map, colour_map, grade, target }
+        Self { pixels, false_colour: false, tone_map, colour_map, grade, lut: false, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.

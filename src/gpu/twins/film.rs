@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of film, and of the sRGB curve of window/present: from light to pixels. Both sides are f32 here.
 
-use super::inputs::{Inputs, Outputs};
+use super::inputs::{Inputs, Outputs, Random};
+use super::run::Image;
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::film::metering::{self, MeterParams};
 use crate::film::{
-    FilmParams, colour_map, develop, dither, false_colour, filmic, grade, limited, srgb_encode, tone_map,
+    FilmParams, colour_map, develop, develop_through, dither, false_colour, filmic, grade, limited, lut, srgb_encode,
+    tone_map,
 };
 use crate::gpu::kernel::choices::FROM_UNIFORM;
-use crate::image::PixelFormat;
+use crate::gpu::kernel::slots::LUT;
 use crate::image::file::srgb_to_linear;
+use crate::image::{Lut, PixelFormat};
 use crate::scene::{ColourMap, Film, Filmic, Grade, ToneMap, View};
 use bytemuck::Zeroable;
+use std::sync::OnceLock;
 
 const HEAD: &str = "
 #import film/film
@@ -20,6 +24,7 @@ const HEAD: &str = "
 #import film/false_colour
 #import film/filmic
 #import film/grade
+#import film/lut
 #import film/params
 #import metering/params
 #import metering/stops
@@ -29,7 +34,8 @@ var<private> meter: MeterParams;
 fn enter_film() {
     film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u), word(8u), in1(9u),
         in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in1(28u),
-        in1(29u), word(30u), word(31u), in4(32u), in4(36u), in4(40u));
+        in1(29u), word(30u), word(31u), in4(32u), in4(36u), in4(40u),
+        in3(44u), word(47u), in3(48u), in1(51u));
 }
 fn enter_meter() {
     meter = MeterParams(vec2<u32>(1u), vec2<u32>(1u), 1u, 1.0, 0.0, in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u),
@@ -43,7 +49,7 @@ fn out_bytes(words: vec4<u32>, count: u32) {
 ";
 
 /// Words of `FilmParams`, behind which light comes.
-const LIGHT: usize = 44;
+const LIGHT: usize = 52;
 
 fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
     let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic][i.random.below(4) as usize];
@@ -71,9 +77,11 @@ fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
         exposure_ev: i.random.even(-2.0, 2.0),
         grade: if on { grade } else { Grade::default() },
         filmic,
+        lut_strength: if i.random.below(2) == 0 { 1.0 } else { i.random.even(0.0, 1.0) },
         ..Film::plain()
     };
     let params = FilmParams::new(&film, view, format, i.random.below(2) == 0).over_frame(8192, 6000);
+    let params = params.with_lut(Some(table()), &film);
     bytemuck::cast::<_, [u32; LIGHT]>(params).into_iter().for_each(|word| {
         i.push_word(word);
     });
@@ -99,6 +107,29 @@ fn push_light(i: &mut Inputs) {
     [x, y].into_iter().for_each(|word| {
         i.push_word(word);
     });
+}
+
+/// Random colours, beyond 0 and 1 as well, over a domain that no colour reaches all of.
+fn table() -> &'static Lut {
+    static TABLE: OnceLock<Lut> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let mut random = Random(17);
+        let side = 17;
+        let mut node = || [0, 1, 2].map(|_| random.even(-0.2, 1.2) as f32);
+        let nodes = (0..Lut::node_count(side)).map(|_| node()).map(|[r, g, b]| [r, g, b, 0.0]).collect();
+        Lut::over(side, [[0.0, -0.5, 0.25], [1.0, 1.5, 0.75]], nodes)
+    })
+}
+
+fn images() -> Vec<Image> {
+    vec![Image {
+        name: "film_lut",
+        format: LUT.format,
+        size: [table().side(); 3],
+        levels: 1,
+        solid: true,
+        bytes: bytemuck::cast_slice(table().nodes()).to_vec(),
+    }]
 }
 
 /// `steps`: by how many codes bytes may differ.
@@ -145,7 +176,7 @@ pub fn group() -> Group {
     let any = f64::from(FROM_UNIFORM);
     let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any), ("GRADE", any)];
     let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
-    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(44u), word(48u), word(49u)), pixel_words());";
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(52u), word(56u), word(57u)), pixel_words());";
     let twins = vec![
         twin(
             film,
@@ -162,6 +193,38 @@ pub fn group() -> Group {
         )
         .with(&all)
         .exactly(),
+        // Through a table of random colours, but for films with a colour map.
+        twin(
+            film,
+            "develop develop_8bit shown_colour",
+            DEVELOP,
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                push_light(i);
+            },
+            |i, o| {
+                let light = [0, 1, 2, 3].map(|k| i.f(LIGHT + k));
+                let bytes = develop_through(&params(i), Some(table()), light, i.word(LIGHT + 4), i.word(LIGHT + 5));
+                bytes.iter().for_each(|byte| o.values.push((f64::from(*byte), 1.0)));
+            },
+            1.0,
+        )
+        .with(&all)
+        .with(&[("LUT", 1.0)])
+        .exactly(),
+        twin(
+            "film/lut",
+            "through_lut lut_node",
+            "enter_film(); out3(through_lut(in3(52u)));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                (0..3).for_each(|_| {
+                    i.even(0.0, 1.0);
+                });
+            },
+            |i, o| put3(o, lut::through_lut(&params(i).lut, table().nodes(), [0, 1, 2].map(|k| i.f(LIGHT + k)))),
+            ROUNDING,
+        ),
         twin(
             film,
             "develop is_rgba32f",
@@ -204,7 +267,7 @@ pub fn group() -> Group {
         twin(
             encode,
             "limited is_nan",
-            "out3(limited(in3(44u), 100.0));",
+            "out3(limited(in3(52u), 100.0));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 push_light(i);
@@ -230,7 +293,7 @@ pub fn group() -> Group {
         twin(
             "film/filmic",
             "filmic log_rest",
-            "enter_film(); out3(filmic(in3(44u)));",
+            "enter_film(); out3(filmic(in3(52u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -242,7 +305,7 @@ pub fn group() -> Group {
         twin(
             "film/grade",
             "graded",
-            "enter_film(); out3(graded(in3(44u), word(47u), word(48u)));",
+            "enter_film(); out3(graded(in3(52u), word(55u), word(56u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -282,7 +345,7 @@ pub fn group() -> Group {
         twin(
             colours,
             "false_colour scaled sequential diverging lab_encoded",
-            "enter_film(); out3(false_colour(in1(44u)));",
+            "enter_film(); out3(false_colour(in1(52u)));",
             push_value,
             |i, o| {
                 let film = params(i);
@@ -331,5 +394,5 @@ pub fn group() -> Group {
             TRANSCENDENTAL,
         ),
     ];
-    Group { name: "film", head: HEAD.into(), twins, images: Vec::new, tables: Vec::new }
+    Group { name: "film", head: HEAD.into(), twins, images, tables: Vec::new }
 }

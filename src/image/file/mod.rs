@@ -26,6 +26,7 @@ mod png;
 mod pnm;
 mod load;
 mod save;
+mod cube;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -81,10 +81,24 @@ pub struct GlareStages {
 pub enum PixelOutput {
     /// In the same place in every submission.
     Fixed(wgpu::BindGroup),
-    /// In the submission's staging buffer: the group's layout, and the film.
-    Staged(wgpu::BindGroupLayout, wgpu::Buffer),
-    /// In the rows of a buffer that holds the whole frame: the group's layout, the film, the buffer.
-    Rows(wgpu::BindGroupLayout, wgpu::Buffer, wgpu::Buffer, FrameRows),
+    /// In the submission's staging buffer.
+    Staged(Writes),
+    /// In the rows of a buffer that holds the whole frame.
+    Rows(Writes, wgpu::Buffer, FrameRows),
+}
+
+/// Group 2 of a kernel that writes pixels, but for where they go.
+pub struct Writes {
+    layout: wgpu::BindGroupLayout,
+    film: wgpu::Buffer,
+    lut: wgpu::TextureView,
+}
+
+impl Writes {
+    fn group(&self, device: &Device, pixels: wgpu::BindingResource<'_>) -> Result<wgpu::BindGroup> {
+        let lut = wgpu::BindingResource::TextureView(&self.lut);
+        device.bind(&self.layout, &[self.film.as_entire_binding(), pixels, lut])
+    }
 }
 
 impl RecordConsumer {
@@ -191,22 +205,20 @@ impl FrameBuffers {
         } else {
             Shading::Only(shades(kernels, &[])?)
         };
-        let group = |writer: &Compiled, film: &CachedUniform, pixels| {
-            device.bind(writer.target()?, &[film.buffer.as_entire_binding(), pixels])
-        };
-        let pixel_output = |writer: &Compiled, film: &CachedUniform| match target {
-            FrameTarget::Image(view, _) => {
-                group(writer, film, wgpu::BindingResource::TextureView(view)).map(PixelOutput::Fixed)
-            }
-            FrameTarget::Buffer(buffer, rows) => {
-                Ok(PixelOutput::Rows(writer.target()?.clone(), (*film.buffer).clone(), buffer.clone(), rows))
-            }
-            FrameTarget::Nowhere => Err(Error::internal("pixels of a frame without a picture")),
-            FrameTarget::Copied(_) => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
-            FrameTarget::Host if variants.rows => {
-                Ok(PixelOutput::Staged(writer.target()?.clone(), (*film.buffer).clone()))
-            }
-            FrameTarget::Host => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
+        let pixel_output = |writer: &Compiled, film: &CachedUniform| {
+            let (layout, film) = (writer.target()?.clone(), (*film.buffer).clone());
+            let writes = Writes { layout, film, lut: tables.lut().clone() };
+            Ok(match target {
+                FrameTarget::Image(view, _) => {
+                    PixelOutput::Fixed(writes.group(device, wgpu::BindingResource::TextureView(view))?)
+                }
+                FrameTarget::Buffer(buffer, rows) => PixelOutput::Rows(writes, buffer.clone(), rows),
+                FrameTarget::Nowhere => return Err(Error::internal("pixels of a frame without a picture")),
+                FrameTarget::Host if variants.rows => PixelOutput::Staged(writes),
+                FrameTarget::Copied(_) | FrameTarget::Host => {
+                    PixelOutput::Fixed(writes.group(device, sized.packed.as_entire_binding())?)
+                }
+            })
         };
         let (output, glare) = match (&setup.bloom, variants.developed) {
             (Some(bloom), Some(developed)) => {
@@ -224,7 +236,9 @@ impl FrameBuffers {
                     develop: develops.stage(device, &[slice::from_ref(&pass), &light])?,
                     output: pixel_output(&develops, &fixed.film_of_exposed)?,
                 };
-                (PixelOutput::Fixed(group(&writer, &fixed.film, self.bloom.light()?)?), Some(glare))
+                let film = fixed.film.buffer.as_entire_binding();
+                let light = device.bind(writer.target()?, &[film, self.bloom.light()?])?;
+                (PixelOutput::Fixed(light), Some(glare))
             }
             _ => (pixel_output(&writer, &fixed.film)?, None),
         };
@@ -287,15 +301,15 @@ impl PixelOutput {
     pub fn group(&self, device: &Device, staging: &wgpu::Buffer, tile: Tile) -> Result<wgpu::BindGroup> {
         match self {
             Self::Fixed(group) => Ok(group.clone()),
-            Self::Rows(layout, film, buffer, rows) => {
+            Self::Rows(writes, buffer, rows) => {
                 let TilePlace { offset, size, .. } = rows.place(device, tile);
                 let size = size.and_then(std::num::NonZeroU64::new);
                 let pixels = wgpu::BufferBinding { buffer, offset, size };
-                device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])
+                writes.group(device, wgpu::BindingResource::Buffer(pixels))
             }
-            Self::Staged(layout, film) => {
+            Self::Staged(writes) => {
                 let pixels = wgpu::BufferBinding { buffer: staging, offset: PIXELS, size: None };
-                device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])
+                writes.group(device, wgpu::BindingResource::Buffer(pixels))
             }
         }
     }

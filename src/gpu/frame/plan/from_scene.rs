@@ -21,6 +21,7 @@ use crate::scene::observer::Lens;
 use crate::scene::{KerrThreshold, Lensing, Projection, Region, Scene, View};
 use crate::tracer::{AdapterInfo, Backend, FrameRequest};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// The device, as far as plans depend on it.
 #[derive(Clone, Copy)]
@@ -58,14 +59,15 @@ impl Planner<'_> {
         let settings = for_f32(scene.pixel_settings_of(&emitters));
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent)
-            .over_frame(request.region.full_width, request.region.full_height);
+            .over_frame(request.region.full_width, request.region.full_height)
+            .with_lut(scene.shown_lut().map(Arc::as_ref), &scene.film);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())?;
         let meter = bloom.as_ref().and_then(|bloom| MeterParams::new(&scene.film, bloom));
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.info.software);
-        let film_variant = FilmVariant::new(&scene.film, scene.view, request.format, target);
+        let film_variant = FilmVariant::new(scene, request.format, target);
         let formula = lens.mapping.projection;
         let (usual_view, usual_film) = (formula == Projection::Perspective, film_variant.is_usual());
         // Where one kernel both looks and develops, what is unusual in either is left open in both.

@@ -18,4 +18,5 @@ pub(in crate::gpu) mod sky_target;
 pub(in crate::gpu) mod frame_buffers;
 pub(in crate::gpu) mod sky_maps;
 pub(in crate::gpu) mod output_buffers;
+pub(in crate::gpu) mod lut_texture;
 pub(in crate::gpu) mod tables;

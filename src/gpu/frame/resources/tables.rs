@@ -3,10 +3,11 @@
 //! stars), the disk's temperature profile (made anew when the matter's spin changes), and the places
 //! of hot spots in free fall, of each frame. Textures of TABLE_WIDTH
 //! entries a row (shade/shade.wgsl says why). Beside them lie pictures: sky maps, the streaks of the disk, and the
-//! filaments and the structure of matter with depth.
+//! filaments and the structure of matter with depth, and the film's LUT.
 
 use super::baked::{Bake, BakedTextures};
 use super::filaments::FilamentTexture;
+use super::lut_texture::LutTexture;
 use super::occluder::OccluderTexture;
 use super::sky_maps::SkyMaps;
 use super::streaks::StreakTexture;
@@ -45,6 +46,7 @@ pub struct Tables {
     filaments: FilamentTexture,
     baked: BakedTextures,
     occluder: OccluderTexture,
+    lut: LutTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
     /// `Uploads::lost` when they were made: after another number nobody knows what they hold.
@@ -52,7 +54,7 @@ pub struct Tables {
 }
 
 /// The pictures that are kept when the stars change.
-type Pictures = (SkyMaps, StreakTexture, (FilamentTexture, BakedTextures), OccluderTexture);
+type Pictures = (SkyMaps, StreakTexture, (FilamentTexture, BakedTextures), (OccluderTexture, LutTexture));
 
 /// A texture of `size` entries in rows, the last one filled up.
 fn table<T: bytemuck::Pod>(
@@ -81,14 +83,26 @@ fn table<T: bytemuck::Pod>(
 
 impl Tables {
     fn new(device: &Device, stars: Arc<StarIndex>, pictures: Pictures) -> Result<Self> {
-        let (sky_maps, streaks, (filaments, baked), occluder) = pictures;
+        let (sky_maps, streaks, (filaments, baked), (occluder, lut)) = pictures;
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
         let lost_uploads = device.uploads.lost();
         let profile_spin = None;
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, baked, occluder, profile_spin, lost_uploads })
+        Ok(Self {
+            stars,
+            light,
+            star_cells,
+            sky_maps,
+            streaks,
+            filaments,
+            baked,
+            occluder,
+            lut,
+            profile_spin,
+            lost_uploads,
+        })
     }
 
     /// Brings the tables up to the scene's stars, maps, disk and volumes, the frame being set up. Errors: UNSUPPORTED
@@ -115,7 +129,7 @@ impl Tables {
             None => {
                 let (maps, streaks) = (SkyMaps::new(device)?, StreakTexture::new(device)?);
                 let structure = (FilamentTexture::new(device)?, BakedTextures::new(device)?);
-                let occluder = OccluderTexture::new(device)?;
+                let occluder = (OccluderTexture::new(device)?, LutTexture::new(device)?);
                 Self::new(device, stars, (maps, streaks, structure, occluder))?
             }
         };
@@ -125,7 +139,7 @@ impl Tables {
     }
 
     fn into_pictures(self) -> Pictures {
-        (self.sky_maps, self.streaks, (self.filaments, self.baked), self.occluder)
+        (self.sky_maps, self.streaks, (self.filaments, self.baked), (self.occluder, self.lut))
     }
 
     /// Group 0 of emit/streaks.wgsl.
@@ -136,6 +150,11 @@ impl Tables {
     /// `occluder` of shade/shade.wgsl.
     pub fn occluder(&self) -> &OccluderTexture {
         &self.occluder
+    }
+
+    /// `film_lut` of film/lut.wgsl.
+    pub fn lut(&self) -> &wgpu::TextureView {
+        self.lut.view()
     }
 
     /// `sky_map` of shade/shade.wgsl, and the Milky Way's.
@@ -180,6 +199,7 @@ impl Tables {
         }
         self.baked.update(device, &setup.structure)?;
         self.occluder.update(device, scene)?;
+        self.lut.update(device, scene)?;
         if !setup.places.is_empty() {
             // Whole rows: what a last one has left over is no spot's.
             let rows = setup.places.len().next_multiple_of(TABLE_WIDTH);

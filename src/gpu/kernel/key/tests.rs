@@ -15,7 +15,7 @@ use wgpu::naga::front::wgsl::parse_str;
 
 /// More kernels than these cannot exist, for one choice of outputs. Each choice multiplies the number, so that one more
 /// has to raise this on purpose.
-const MOST_KERNELS: u64 = 200_000_000_000;
+const MOST_KERNELS: u64 = 400_000_000_000;
 
 /// Constants that kernels mention and leave at WGSL's default: those of rays that tables are made of and of samples
 /// that tables do not hold, which are integrated as AUTO does, without matter.
