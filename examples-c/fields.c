@@ -255,6 +255,12 @@ const Field FILM_FIELDS[] = {
     {"--shadows", OPTION_DOUBLE, offsetof(BhrFilm, shadows), "EV", 0, 1, "0 .. 1",
      "local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose; "
      "black stays black", NULL},
+    {"--grain", OPTION_DOUBLE, offsetof(BhrFilm, grain), "pixel", 0, 1, "0 .. 1",
+     "grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself", NULL},
+    {"--grain-seed", OPTION_DOUBLE, offsetof(BhrFilm, grain_seed), NULL, -1e15, 1e15, "-1e15 .. 1e15",
+     "any number within +-1e15: each is another grain, for instance that of a film's frame", NULL},
+    {"--lut-strength", OPTION_DOUBLE, offsetof(BhrFilm, lut_strength), NULL, 0, 1, "0 .. 1",
+     "0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

@@ -16,6 +16,7 @@
 #define MOVING_FOR 0.2            /* after a change by hand another one is likely for so long */
 #define RESTING_WAIT 0.25         /* between looks at a picture that rests, or cannot be seen */
 #define TITLE_PERIOD 0.25
+#define NEWS_FOR 4.0 /* of a picture, in the title */
 #define MOST_FAILURES 3 /* frames in a row, before it gives up */
 
 typedef struct Settings {
@@ -216,6 +217,26 @@ static double spare_time(const Viewer *v) {
     return spare > 0.5 * v->governor.period ? spare : 0.0; /* less may be the display's own rhythm: leave it alone */
 }
 
+/* Looks after a picture that is rendered in the background. */
+static void watch_picture(Viewer *v) {
+    switch (picture_poll(&v->picture)) {
+    case PICTURE_NONE:
+        break;
+    case PICTURE_RUNNING:
+        snprintf(v->news, sizeof v->news, "   %s %.0f %%", v->picture.path, 100.0 * v->picture.fraction);
+        v->news_until = v->now + NEWS_FOR;
+        break;
+    case PICTURE_SAVED:
+        snprintf(v->news, sizeof v->news, "   saved %s", v->picture.path);
+        v->news_until = v->now + NEWS_FOR;
+        break;
+    case PICTURE_FAILED:
+        snprintf(v->news, sizeof v->news, "   no picture: see the terminal");
+        v->news_until = v->now + NEWS_FOR;
+        break;
+    }
+}
+
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
 static void handle_events(Viewer *v) {
     const double spare = spare_time(v);
@@ -223,7 +244,7 @@ static void handle_events(Viewer *v) {
         glfwWaitEvents();
     } else if (v->skipped || !needs_frame(v)) {
         v->presented_at = 0.0;
-        glfwWaitEventsTimeout(RESTING_WAIT);
+        glfwWaitEventsTimeout(v->picture.job != NULL ? TITLE_PERIOD / 4.0 : RESTING_WAIT);
         v->now = wall_seconds(); /* the scene did not move meanwhile */
     } else if (spare > 0.0) {
         glfwWaitEventsTimeout(spare);
@@ -241,7 +262,7 @@ static void update_title(Viewer *v) {
     if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
         return;
     }
-    char title[224], rate[32], gpu[32], scale[32] = "", look[32] = "";
+    char title[288], rate[32], gpu[32], scale[32] = "", look[32] = "";
     snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
     snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
     if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
@@ -251,8 +272,9 @@ static void update_title(Viewer *v) {
         snprintf(look, sizeof look, "   %s, %s", choice_name(PRESETS, v->preset),
                  choice_name(PRESET_MATTERS, v->preset_matter));
     }
-    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", rate, gpu,
-             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
+    const char *news = v->now < v->news_until ? v->news : "";
+    snprintf(title, sizeof title, "bhr%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", news, rate,
+             gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
     glfwSetWindowTitle(v->window, title);
     v->titled_at = v->now;
     v->frames_untitled = 0;
@@ -268,6 +290,7 @@ static void turn(Viewer *v) {
             recorder_add(&v->recorder, v->context);
         }
     }
+    watch_picture(v);
     update_title(v);
 }
 
@@ -464,6 +487,7 @@ static void finish(Viewer *v) {
     if (v->recorder.running) {
         recorder_stop(&v->recorder);
     }
+    picture_end(&v->picture);
     bhr_surface_destroy(v->surface);
     bhr_context_destroy(v->context);
     if (v->window != NULL) {

@@ -35,6 +35,7 @@ typedef struct Viewer {
     int      paused;
     Governor governor;
     Recorder recorder;
+    PictureJob picture;
 
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */
@@ -48,6 +49,8 @@ typedef struct Viewer {
     double   changed_at;    /* when the picture was last changed by hand */
     double   presented_at;  /* when the last frame was done; 0: there was a pause since */
     double   titled_at;
+    char     news[PICTURE_NAME + 32]; /* of pictures, in the title */
+    double   news_until;
     unsigned frames_untitled; /* presented since the title was written */
     uint64_t frames;          /* presented */
     unsigned failures;        /* frames that failed since the last good one */

@@ -273,9 +273,14 @@ static void load_scene(Viewer *v, double unused) {
 
 static void save_picture(Viewer *v, double unused) {
     (void)unused;
-    if (v->size[0] != 0 && v->size[1] != 0) {
-        viewer_apply_for_picture(v);
-        picture_save_numbered(v->context, v->size[0], v->size[1]);
+    if (v->picture.job != NULL) {
+        picture_cancel(&v->picture);
+        SAY(v, "picture broken off: %s", v->picture.path);
+        v->news_until = 0.0;
+    } else if (v->size[0] != 0 && v->size[1] != 0) {
+        Scene scene = v->scene;
+        governor_choose_for_picture(&v->governor, &scene.quality);
+        picture_begin_numbered(&v->picture, v->context, &scene, v->size[0], v->size[1]);
     }
 }
 
@@ -383,7 +388,7 @@ static const Key KEYS[] = {
 
     {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
     {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, 0},
-    {GLFW_KEY_F12, 0, "F12", "save a picture", save_picture, 0, 0},
+    {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, 0},
     {GLFW_KEY_R, 0, NULL, "record pictures, and stop", toggle_recording, 0, 0},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin again", reset, 0, 0},

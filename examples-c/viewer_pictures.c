@@ -38,21 +38,105 @@ static int exists(const char *path) {
     return file != NULL;
 }
 
-int picture_save_numbered(BhrContext *context, uint32_t width, uint32_t height) {
-    char path[32];
+static int free_name(char *path) {
     for (int i = 1; i <= MOST_PICTURES; i++) {
-        snprintf(path, sizeof path, "viewer-%04d.png", i);
-        if (exists(path)) {
-            continue;
+        snprintf(path, PICTURE_NAME, "viewer-%04d.png", i);
+        if (!exists(path)) {
+            return 1;
         }
-        if (!picture_save(context, width, height, path)) {
-            return 0;
-        }
-        printf("picture saved: %s, %u x %u\n", path, (unsigned)width, (unsigned)height);
-        return 1;
     }
     fprintf(stderr, "cannot save a picture: there are viewer-0001.png to viewer-%d.png already\n", MOST_PICTURES);
     return 0;
+}
+
+/* A context on the adapter of another one. */
+static BhrStatus open_beside(const BhrContext *context, BhrContext **beside) {
+    BhrContextOptions options;
+    BhrAdapterInfo    adapter;
+    BHR_INIT(options);
+    BHR_INIT(adapter);
+    BhrStatus status = bhr_context_adapter(context, &adapter);
+    if (status < 0) {
+        return status;
+    }
+    options.backend = adapter.backend;
+    return bhr_context_create(BHR_ABI_VERSION, &options, beside);
+}
+
+/* Gives one context the scene of another, as text, and then the values of `scene`: in the text things that move are as
+ * they begin. */
+static BhrStatus copy_scene(const BhrContext *from, const Scene *scene, BhrContext *to) {
+    size_t    size = 0;
+    BhrStatus status = bhr_scene_save(from, NULL, 0, &size);
+    char     *text = status < 0 ? NULL : malloc(size + 1);
+    if (text == NULL) {
+        return status < 0 ? status : BHR_ERROR_OUT_OF_MEMORY;
+    }
+    status = bhr_scene_save(from, text, size + 1, &size);
+    if (status >= 0) {
+        status = bhr_scene_load(to, text, size);
+    }
+    free(text);
+    return status < 0 ? status : scene_apply(scene, to);
+}
+
+int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const Scene *scene, uint32_t width,
+                           uint32_t height) {
+    picture_cancel(picture);
+    if (!free_name(picture->path) || !picture_allocate(&picture->image, BHR_FORMAT_RGBA8_SRGB, width, height)) {
+        return 0;
+    }
+    BhrStatus status = picture->context == NULL ? open_beside(context, &picture->context) : BHR_OK;
+    if (status >= 0) {
+        status = copy_scene(context, scene, picture->context);
+    }
+    if (status >= 0) {
+        status = bhr_render_image_async(picture->context, &picture->image, &picture->job);
+    }
+    picture->fraction = 0.0;
+    if (status < 0) {
+        report_failure("begin a picture", status);
+        free(picture->image.pixels);
+        /* Its device may be lost: the next picture has a new one. */
+        bhr_context_destroy(picture->context);
+        picture->context = NULL;
+    }
+    return status >= 0;
+}
+
+PictureEnd picture_poll(PictureJob *picture) {
+    if (picture->job == NULL) {
+        return PICTURE_NONE;
+    }
+    BhrStatus status = bhr_job_wait(picture->job, 0, &picture->fraction);
+    if (status == BHR_NOT_READY) {
+        return PICTURE_RUNNING;
+    }
+    if (status >= 0) {
+        status = bhr_image_save(&picture->image, picture->path);
+    }
+    if (status < 0) {
+        report_failure("save a picture", status);
+    } else {
+        printf("picture saved: %s, %u x %u\n", picture->path, (unsigned)picture->image.width,
+               (unsigned)picture->image.height);
+    }
+    picture_cancel(picture);
+    return status < 0 ? PICTURE_FAILED : PICTURE_SAVED;
+}
+
+void picture_cancel(PictureJob *picture) {
+    if (picture->job != NULL) {
+        bhr_job_destroy(picture->job);
+        picture->job = NULL;
+        free(picture->image.pixels);
+    }
+}
+
+void picture_end(PictureJob *picture) {
+    picture_cancel(picture);
+    bhr_context_destroy(picture->context);
+    picture->context = NULL;
 }
 
 int recorder_start(Recorder *recorder, uint32_t width, uint32_t height) {

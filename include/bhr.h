@@ -977,7 +977,8 @@ typedef int32_t BhrColourMap;
 
 /** How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
  * radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
- * vignette, white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering. */
+ * vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and
+ * the LUT, or the colour map, dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -1040,6 +1041,14 @@ typedef struct BhrFilm {
     /** Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
      * black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0 */
     double shadows;
+    /** Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
+     * 0: off. Its mean stays, and it looks the same at every resolution. @since 0.2.0 */
+    double grain;
+    /** Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0 */
+    double grain_seed;
+    /** 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+     * @since 0.2.0 */
+    double lut_strength;
 } BhrFilm;
 
 /** Fills in the defaults. */
@@ -1050,6 +1059,23 @@ BHR_NODISCARD BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
 
 /** Reads the film as it is set. */
 BHR_NODISCARD BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
+
+/** Gives the film a LUT, a table of colours, copied before return: side^3 nodes of red, green and blue, red changing
+ * fastest, spread evenly over sRGB-encoded colours from 0 to 1, which become the nodes' colours, by tetrahedral
+ * interpolation between them, limited to 0 .. 1. side: 2 .. 65; count = 3 side^3, the number of floats; 0 takes the
+ * LUT away, and then nodes may be NULL. It works where the film does, but with no colour map, and stays when film or
+ * preset change. Black becomes what the LUT has for it, in transparent images as well. Memory: 16 bytes a node in the
+ * context and on the device. docs/colour-and-film.md.
+ * Errors: INVALID_ARGUMENT also for a node that is not finite; the LUT is then as it was. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_set_film_lut(BhrContext *context, const float *nodes, size_t count, uint32_t side);
+
+/** Gives the film the LUT in a .cube file (Adobe's Cube LUT Specification 1.0), as bhr_set_film_lut does one in
+ * memory; over its DOMAIN_MIN and DOMAIN_MAX, or LUT_3D_INPUT_RANGE, beyond which colours become those at the edge.
+ * The path is kept, so that bhr_scene_save can name it; a file that is given again and has not changed is not read
+ * again.
+ * Errors, after which the LUT is as it was: IO, with the line, for a file that is not there, not readable, not UTF-8,
+ * larger than 32 MiB, or no LUT of three dimensions and 2 to 65 nodes a side. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_set_film_lut_file(BhrContext *context, const char *path);
 
 /* ---- relativistic effects, time ---- */
 
@@ -1267,7 +1293,8 @@ BHR_NODISCARD BhrStatus bhr_get_region(const BhrContext *context, BhrRegion *reg
  * alone.
  * Errors, after which the scene is as it was: INVALID_ARGUMENT, with line and column, for text that is no TOML, an
  * unknown name, a value of another type or out of its range, at any of the times that it names; INVALID_STATE and
- * UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for its map. @since 0.2.0 */
+ * UNSUPPORTED for a camera that cannot move as it is to; IO and those of bhr_set_sky_map for map and LUT.
+ * @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_load(BhrContext *context, const char *text, size_t size);
 
 /** Sets the whole scene from a file, as bhr_scene_load does from text. Paths in it are relative to its folder. A struct
@@ -1305,12 +1332,12 @@ BHR_NODISCARD BhrStatus bhr_scene_pictures(const BhrContext *context, uint32_t *
  * text that was loaded last is written as it was read, so that the scene that is read is that of 0 seconds. Occluders
  * are not part of it; paths are absolute.
  * Errors: INVALID_ARGUMENT for a buffer of fewer than *out_size + 1 bytes, which then stays as it was; UNSUPPORTED
- * for a map of the sky whose path is not UTF-8, or that has none: one of bhr_set_sky_map or bhr_set_sky_target.
- * @since 0.2.0 */
+ * for a map of the sky or a LUT whose path is not UTF-8, or that has none: one that was set from memory or by
+ * bhr_set_sky_target. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_save(const BhrContext *context, char *buffer, size_t size, size_t *out_size);
 
-/** Writes the scene as it is set to a file, as bhr_scene_save does to memory. The path of a map in the file's folder,
- * or below it, is relative to that. A file is replaced as bhr_image_save does it.
+/** Writes the scene as it is set to a file, as bhr_scene_save does to memory. Paths of a map and a LUT in the file's
+ * folder, or below it, are relative to that. A file is replaced as bhr_image_save does it.
  * Errors: UNSUPPORTED as bhr_scene_save; IO. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_scene_save_file(const BhrContext *context, const char *path);
 

@@ -469,7 +469,7 @@ export interface Sky {
 /**
  * How light becomes pixels, in 8-bit formats and windows of "light" only: float formats hold linear radiance, and other
  * views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette, white
- * balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering.
+ * balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map, dithering.
  */
 export interface Film {
     /**
@@ -624,6 +624,25 @@ export interface Film {
      * @default 0
      */
     shadows: number;
+    /**
+     * Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
+     * 0: off. Its mean stays, and it looks the same at every resolution.
+     * @range 0 .. 1 pixel
+     * @default 0
+     */
+    grain: number;
+    /**
+     * Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0.
+     * @range -1e15 .. 1e15
+     * @default 0
+     */
+    grain_seed: number;
+    /**
+     * 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+     * @range 0 .. 1
+     * @default 1
+     */
+    lut_strength: number;
 }
 
 /** How exactly to trace. */

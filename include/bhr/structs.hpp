@@ -264,6 +264,12 @@ struct Film {
     /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
     /// black stays black.
     double shadows;
+    /// Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself.
+    double grain;
+    /// Any number within +-1e15: each is another grain, for instance that of a film's frame.
+    double grain_seed;
+    /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off.
+    double lut_strength;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

@@ -214,6 +214,16 @@ viewer_saves_pictures() {
         [ "$(identify -format '%wx%h' "$viewer_folder/viewer-0003.png")" = 320x180 ]
 }
 
+# F12 of a scene that takes long: the title tells how far the picture is, keys are answered meanwhile, and F12 breaks it
+# off, without a file.
+viewer_goes_on_beside_a_picture() {
+    viewer_open --size 640x360 --scene "$root/examples-c/scenes/soft-disk.toml" || return 1
+    xdotool key F12 && viewer_until 60 viewer_title_says 'viewer-0001.png [0-9]* %' &&
+        xdotool key m && viewer_until 30 viewer_says '^mass' && ! viewer_says 'saved: viewer-0001' &&
+        xdotool key F12 && viewer_until 60 viewer_says '^picture broken off: viewer-0001.png' &&
+        [ ! -e "$viewer_folder/viewer-0001.png" ] && viewer_close
+}
+
 # R: a folder of numbered pictures that differ, as many as it says, even when the window changes its size on the way.
 viewer_records() {
     viewer_open --size 160x90 --motion freefall --distance 8 || return 1

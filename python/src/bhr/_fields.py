@@ -263,7 +263,7 @@ class Sky(Struct):
 class Film(Struct):
     """How light becomes pixels, in 8-bit formats and windows of View.LIGHT only: float formats hold linear radiance,
     and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette,
-    white balance, contrast, saturation, tone map, the sRGB curve or the colour map, dithering."""
+    white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -330,6 +330,13 @@ class Film(Struct):
     #: Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
     #: black stays black. Default 0: off. Regions as for auto_exposure.
     shadows: float = 0.0
+    #: Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
+    #: 0: off. Its mean stays, and it looks the same at every resolution.
+    grain: float = 0.0
+    #: Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0.
+    grain_seed: float = 0.0
+    #: 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
+    lut_strength: float = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
