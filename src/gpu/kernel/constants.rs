@@ -21,7 +21,7 @@ use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic, quadrature};
-use crate::scene::occluder::NO_THING;
+use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
@@ -81,6 +81,7 @@ fn all() -> Vec<(&'static str, String)> {
         OUTPUT_ORDER: u32 = RayOutputKind::Order;
         OUTPUT_DEFLECTION: u32 = RayOutputKind::Deflection;
         MOST_OUTPUTS: u32 = MOST_OUTPUTS;
+        BEYOND_ALL: f32 = BEYOND_ALL;
         NO_THING: f32 = NO_THING;
         FATE_CAPTURED: u32 = Fate::Captured;
         FATE_ESCAPED: u32 = Fate::Escaped;
