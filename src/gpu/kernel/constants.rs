@@ -111,6 +111,7 @@ fn all() -> Vec<(&'static str, String)> {
         KERR_ROWS_BELOW: u32 = kerr::ROWS_BELOW;
         KERR_ROWS_ABOVE: u32 = kerr::ROWS_ABOVE;
         KERR_CURVE: u32 = critical::CRITICAL_NODES;
+        AT_HORIZON: f32 = critical::AT_HORIZON;
         MARGIN_OF_ALL: u32 = critical::ByMargin::All;
         SWIFT_GAMMA: f32 = Observer::SWIFT;
         KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
