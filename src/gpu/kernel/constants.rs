@@ -282,6 +282,7 @@ fn all() -> Vec<(&'static str, String)> {
         MAX_SPREAD: f32 = filter::MAX_SPREAD;
         MOST_SPREAD: f32 = filter::MOST_SPREAD;
         WIDE_TAP: f32 = filter::WIDE_TAP;
+        TAP_TEXEL: f32 = filter::TAP_TEXEL;
         STRAIGHT: f32 = filter::STRAIGHT;
         WHOLE_SKY: f32 = filter::WHOLE_SKY;
         TINY_AXIS: f32 = filter::TINY_AXIS;
