@@ -21,12 +21,14 @@ fn potential_minimum(c: Constants) -> f32 {
 fn curve_level_within(n: vec3<f32>) -> f32 {
     let begin = begin_local(n);
     let c = begin.c;
-    let u = potential_minimum(c);
-    let root = sqrt(max(u * u * (c.k - c.a2e2 - u * (2.0 * c.b - u * c.a2q)), 0.0)) / abs(c.energy);
-    let inward = begin.state.du > 0.0;
-    // Where P falls all the way to the horizon, its least value there tells rays on both sides of it.
-    let before = begin.state.u < u && (inward || u * c.r_plus < 1.0 - 1e-6);
-    let level = select(select(1.0 - root, 1.0, before), select(-1.0, root - 1.0, before), inward);
+    let u = begin.state.u;
+    let du = begin.state.du;
+    let m = potential_minimum(c);
+    let rest = c.a2e2 - c.k + m * (4.0 * c.b - 3.0 * c.a2q * m) + u * (2.0 * c.b - c.a2q * (u + 2.0 * m));
+    let least = c.energy * c.energy + m * m * (c.a2e2 - c.k + m * (2.0 * c.b - m * c.a2q));
+    let rise = select(du * du - least, (m - u) * (m - u) * rest, m * c.r_plus < 1.0 - AT_HORIZON);
+    let root = sqrt(max(rise, 0.0));
+    let level = (select(root, -root, u > m) - du) / c.nu_local;
     return select(-1.0, level, begin.has_light && c.energy > 0.0);
 }
 

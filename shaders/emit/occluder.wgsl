@@ -19,6 +19,12 @@ var<private> occluder_ends: bool;
 // The ray that is traced has ended there.
 var<private> occluder_passed: bool;
 
+// 1/r between which a crossing hides the rest of the ray of the sample at hand: everywhere that the disk is opaque, but
+// where the host's things may hide the crossing itself.
+fn opaque_u_at() -> vec2<f32> {
+    return select(frame.opaque_u, vec2<f32>(1.0, 0.0), OCCLUDED && occluder_farthest < BEYOND_ALL);
+}
+
 // Goes to the sample at `place` of the full frame.
 fn set_occluder(place: vec2<f32>) {
     let size = vec2<i32>(textureDimensions(occluder));

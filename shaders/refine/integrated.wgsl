@@ -87,7 +87,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
         vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.has_light {
         // The disk may cover but a part of the sample's cell, and then hides nothing behind it.
-        let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
+        let opaque_u = select(opaque_u_at(), vec2<f32>(1.0, 0.0), whole_plane);
         let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
             frame.capture_u, opaque_u);
         let traced = trace(begin.c, begin.state, settings);

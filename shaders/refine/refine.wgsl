@@ -460,6 +460,7 @@ fn even_change(order: u32, high: f32) -> f32 {
 fn is_ragged() -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
+    let opaque_u = opaque_u_at();
     var hidden = false;
     var ragged = false;
     for (var k = 0u; k < min(not_inlined(frame.max_crossings), LANE_ORDERS); k += 1u) {
@@ -477,7 +478,7 @@ fn is_ragged() -> bool {
         let partial = present < 4u && 2.0 * high >= far;
         let steep = present == 4u && span > even_change(k, high) && high + span >= far && low - span <= near;
         ragged = ragged || (!hidden && present > 0u && (partial || steep));
-        hidden = hidden || (present == 4u && low - span >= frame.opaque_u.x && high + span <= frame.opaque_u.y);
+        hidden = hidden || (present == 4u && low - span >= opaque_u.x && high + span <= opaque_u.y);
     }
     for (var s = 1u; s < 4u; s += 1u) {
         ragged = ragged || (!hidden && lane_sky[lane + s].w != lane_sky[lane].w);

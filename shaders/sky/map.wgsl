@@ -46,7 +46,7 @@ fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch)
     let last = firstLeadingBit(size.x);
     let width = max(patch_.minor, texel);
     let line = sqrt(max(patch_.major * patch_.major - width * width, 0.0));
-    let level = min(level_of(width / texel), f32(last));
+    let level = min(level_of(TAP_TEXEL * width / texel), f32(last));
     let finer = u32(level);
     let share = level - f32(finer);
     // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that

@@ -134,7 +134,7 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
         polar_momentum(begin, frequency_ratio) * frame.observer_u);
     if begin.has_light {
         let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings,
-            frame.capture_u, frame.opaque_u);
+            frame.capture_u, opaque_u_at());
         let traced = trace(c, begin.state, settings);
         // A crossing that passes through the horizon is in no way beside an edge of the disk.
         beside_orders |= select(0u, traced.inside, frame.disk_u.x <= frame.disk_u.y);

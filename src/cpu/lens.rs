@@ -25,12 +25,13 @@ pub struct LensLookup<'a> {
     edges: Option<DiskEdges>,
 }
 
-/// A pixel's look direction in the local frame, its changes to the next pixel right and down, and nu(camera) /
-/// nu(local frame).
+/// A pixel's look direction in the local frame, its changes to the next pixel right and down, nu(camera) / nu(local
+/// frame), and 1/r between which a crossing hides what is behind it.
 struct LookDirection {
     n: DVec3,
     changes: [DVec3; 2],
     ratio: f64,
+    opaque_u: Option<[f64; 2]>,
 }
 
 impl<'a> LensLookup<'a> {
@@ -38,6 +39,10 @@ impl<'a> LensLookup<'a> {
         let momenta = recorder.lens.observer.frame.momenta();
         let edges = recorder.disk_u.map(|u| DiskEdges::new(u, recorder.emitters.fading_u()));
         Self { needs: recorder.emitters.needs(), edges, recorder, tables, momenta }
+    }
+
+    pub fn recorder(&self) -> &Recorder<'a> {
+        &self.recorder
     }
 
     /// Makes `record` that of position (x, y) of the full frame, with footprints.
@@ -128,7 +133,7 @@ impl<'a> LensLookup<'a> {
                 let changes = steps.map(|step| self.change_of_place(u, &crossing.change(&step)));
                 (self.place_of(&crossing.image), changes)
             });
-            if self.cross(record, seen.ratio, u, crossing.order, place) {
+            if self.cross(record, seen, u, crossing.order, place) {
                 break;
             }
         }
@@ -154,7 +159,8 @@ impl<'a> LensLookup<'a> {
         let Recorder { lens, .. } = self.recorder;
         let (look, changes) = lens.look_direction_and_changes(x, y);
         let (n, ratio) = lens.observer.aberrate(look);
-        LookDirection { n, changes: changes.map(|change| lens.observer.aberrate_change((n, ratio), change)), ratio }
+        let changes = changes.map(|change| lens.observer.aberrate_change((n, ratio), change));
+        LookDirection { n, changes, ratio, opaque_u: self.recorder.opaque_u_at(x, y) }
     }
 
     /// Looks a record up in the tables of a spin-0 lens.
@@ -177,7 +183,7 @@ impl<'a> LensLookup<'a> {
                     let changes = turns.map(|turn| plane.image_change(&lookup, &crossing, &turn));
                     (self.place_of(&image), changes.map(|change| self.change_of_place(crossing.u, &change)))
                 });
-                if self.cross(record, seen.ratio, crossing.u, order, place) {
+                if self.cross(record, seen, crossing.u, order, place) {
                     break;
                 }
             }
@@ -194,7 +200,7 @@ impl<'a> LensLookup<'a> {
     fn cross(
         &self,
         record: &mut Record,
-        ratio: f64,
+        seen: &LookDirection,
         u: f64,
         order: u32,
         place: Option<(EmissionPoint, [EmissionPoint; 2])>,
@@ -206,8 +212,8 @@ impl<'a> LensLookup<'a> {
         let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_EMISSION_POINT; 2]));
         // Tables hold no more crossings than a record does.
         let share = self.recorder.emitters.covered(u);
-        let _ = record.crossings.try_push(Crossing { u, order, g: ratio * g, place, footprint, share });
-        let hidden = self.recorder.settings.opaque_u.is_some_and(|[outer, inner]| u >= outer && u <= inner);
+        let _ = record.crossings.try_push(Crossing { u, order, g: seen.ratio * g, place, footprint, share });
+        let hidden = seen.opaque_u.is_some_and(|[outer, inner]| u >= outer && u <= inner);
         if hidden {
             record.fate = Fate::Hidden;
         }

@@ -10,7 +10,7 @@ use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::plunge::Matter;
 use crate::physics::trace::{Fate, RayTrace, Settings, trace_look, trace_look_visited};
 use crate::scene::observer::Lens;
-use crate::scene::occluder::Shown;
+use crate::scene::occluder::{BEYOND_ALL, Shown};
 use crate::scene::projection::Mapping;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, polar_momentum};
 use crate::scene::refine::{Edge, is_steep, turning_edge};
@@ -81,6 +81,21 @@ impl<'a> Recorder<'a> {
         self.trace_with(x, y, false, 1)
     }
 
+    /// The settings of the ray through (x, y): what hides the rest of it may itself be hidden by the host's things.
+    fn settings_at(&self, x: f64, y: f64) -> Settings {
+        Settings { opaque_u: self.opaque_u_at(x, y), ..self.settings }
+    }
+
+    /// 1/r between which a crossing hides the rest of the ray through (x, y).
+    pub(super) fn opaque_u_at(&self, x: f64, y: f64) -> Option<[f64; 2]> {
+        self.settings.opaque_u.filter(|_| self.is_whole(x, y))
+    }
+
+    /// Whether none of the host's things is before the ray through (x, y).
+    pub(super) fn is_whole(&self, x: f64, y: f64) -> bool {
+        self.occluder.as_ref().is_none_or(|occluder| occluder.at(x, y) / self.mass >= BEYOND_ALL)
+    }
+
     /// How far the matter along the ray through (x, y) is seen before the host's things.
     fn limit(&self, x: f64, y: f64) -> Option<Limit> {
         let occluder = self.occluder.as_ref()?;
@@ -93,6 +108,7 @@ impl<'a> Recorder<'a> {
     fn trace_with(&self, x: f64, y: f64, parts: bool, rays: u32) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
+        let settings = self.settings_at(x, y);
         let (constants, traced, media) = if parts {
             let (emitters, plane_u) = (&self.emitters, self.plane_u);
             let (media, medium) = (Media::new(), Medium::default());
@@ -102,10 +118,10 @@ impl<'a> Recorder<'a> {
             let seen = Seen { frequency_ratio, static_observer, pixel_angle, swept: 0.0, rays };
             let limit = self.limit(x, y);
             let mut along = MediaAlong { emitters, seen, plane_u, media, medium, limit };
-            let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
+            let (constants, traced) = trace_look_visited(&observer.frame, n, &settings, &mut along);
             (constants, traced, along.finish())
         } else {
-            let (constants, traced) = trace_look(&observer.frame, n, &self.settings);
+            let (constants, traced) = trace_look(&observer.frame, n, &settings);
             (constants, traced, Media::new())
         };
         let mut record = Record {

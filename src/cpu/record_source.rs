@@ -9,3 +9,13 @@ pub enum RecordSource<'a> {
     Traced(Recorder<'a>),
     LensLookup(LensLookup<'a>),
 }
+
+impl<'a> RecordSource<'a> {
+    /// What traces the rays that no table holds.
+    pub fn recorder(&self) -> &Recorder<'a> {
+        match self {
+            Self::Traced(recorder) => recorder,
+            Self::LensLookup(lookup) => lookup.recorder(),
+        }
+    }
+}

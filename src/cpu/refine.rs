@@ -67,7 +67,7 @@ impl<'a> Refiner<'a> {
     fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
         let records = places.map(|place| self.sample(place, EDGE_SAMPLES));
-        if self.are_ragged(&records) {
+        if self.are_ragged(&records, at) {
             return None;
         }
         let samples = Samples { records: &records, beside: &beside_quarter };
@@ -142,7 +142,9 @@ impl<'a> Refiner<'a> {
         Some(record)
     }
 
-    fn are_ragged(&self, records: &[Record; 4]) -> bool {
+    /// Whether what the samples of the pixel about `at` show cannot change evenly from one to the next.
+    fn are_ragged(&self, records: &[Record; 4], [x, y]: [f64; 2]) -> bool {
+        let opaque_u = self.opaque_u.filter(|_| self.plane.recorder().is_whole(x, y));
         let of =
             |record: &Record, order: usize| record.crossings.iter().find(|c| c.order as usize == order).map(|c| c.u);
         for order in 0..CROSSINGS_KEPT {
@@ -151,7 +153,7 @@ impl<'a> Refiner<'a> {
             if crossings.are_ragged(order == 0) {
                 return true;
             }
-            if self.opaque_u.is_some_and(|opaque_u| crossings.cover(opaque_u)) {
+            if opaque_u.is_some_and(|opaque_u| crossings.cover(opaque_u)) {
                 return false;
             }
         }

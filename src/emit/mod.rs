@@ -59,6 +59,8 @@ pub struct Needs {
     pub headings: bool,
     /// The rest of a ray behind matter that hides it.
     pub beyond: bool,
+    /// That rest of the rays that meet the host's things, which may hide that matter.
+    pub beyond_things: bool,
 }
 
 impl Needs {
@@ -71,6 +73,7 @@ impl Needs {
             parts: self.parts || other.parts,
             headings: self.headings || other.headings,
             beyond: self.beyond || other.beyond,
+            beyond_things: self.beyond_things || other.beyond_things,
         }
     }
 }
@@ -95,6 +98,7 @@ impl Emitters {
             parts: !self.volumes.is_empty(),
             headings: self.disk.is_some_and(|disk| disk.least_profile.is_some()),
             beyond: false,
+            beyond_things: false,
         };
         own.and(self.also)
     }
@@ -116,14 +120,15 @@ impl Emitters {
         self.disk.map_or([0.0; 2], |disk| disk.fading_u())
     }
 
-    /// The interval of 1/r in which a crossing of the plane hides all that is behind it, if nobody asks for that.
+    /// The interval of 1/r in which a crossing of the plane hides all that is behind it, if nobody asks for that and
+    /// none of the host's things hides the crossing.
     pub fn opaque_u(&self) -> Option<[f64; 2]> {
         self.disk.filter(|_| !self.also.beyond).and_then(|disk| disk.opaque_u())
     }
 
     /// Whether each crossing that is kept hides all that is behind it, so that one is enough.
     pub fn hides_all(&self) -> bool {
-        self.opaque_u().is_some_and(|u| self.plane_u() == Some(u))
+        !self.also.beyond_things && self.opaque_u().is_some_and(|u| self.plane_u() == Some(u))
     }
 
     /// The share of a crossing at 1/r = `u` that the disk covers: all or nothing.

@@ -164,7 +164,7 @@ impl Scene {
             });
         let mut also = self.also_needs;
         if light && self.occluder.is_some() {
-            (also.places, also.beyond) = (true, true);
+            (also.places, also.beyond_things) = (true, true);
         }
         Emitters { disk, volumes: self.shown_volumes(), also }
     }

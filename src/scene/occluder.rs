@@ -34,6 +34,9 @@ pub struct Occluder {
 /// From this distance on, M, beyond which there are no observers, there is no thing that is met by rays.
 pub const NO_THING: f64 = 1e15;
 
+/// From this distance on, M, a thing stands before nothing; in f32, squares of lengths beyond are infinite.
+pub const BEYOND_ALL: f64 = 1e30;
+
 /// The part of a ray that an occluder leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {

@@ -28,6 +28,10 @@ pub(crate) const WIDE_TAP: f64 = 0.04;
 pub(crate) const WHOLE_SKY: f64 = 1e12;
 /// The least change of direction by pixel, rad. It keeps divisions finite for cameras of no field of view at all.
 pub(crate) const TINY_AXIS: f64 = 1e-12;
+/// The texels that a tap is taken from, in its width, 1 / sqrt(3). Means over texels that are interpolated between them
+/// blur by the variance of a box three times over, once for the texel and twice for the interpolation, and a pixel is
+/// to be the mean over its patch, blurred by the variance of one box as wide as the patch.
+pub(crate) const TAP_TEXEL: f64 = 0.577_350_269_189_626;
 /// Taps stand on a straight line of the map where a great circle bends away from it by at most an eighth of this, in
 /// their widths.
 pub(crate) const STRAIGHT: f64 = 0.15;
@@ -83,7 +87,7 @@ impl SkyMap {
         let texel = self.texel_angle();
         let width = patch.minor.max(texel);
         let line = (patch.major * patch.major - width * width).max(0.0).sqrt();
-        let level = level_of(width / texel).min(self.levels().len() as f64 - 1.0);
+        let level = level_of(TAP_TEXEL * width / texel).min(self.levels().len() as f64 - 1.0);
         let place = map_place(d);
         let reach = 0.5 * line / width + 0.5;
         // The neighbours that get any weight.

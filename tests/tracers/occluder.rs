@@ -8,7 +8,9 @@ use crate::volumes::{haze, in_haze, radial};
 use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, HotSpot, LensTables, Occluder, RayOutputKind, Region, Scene, View, Volume, VolumeResolution};
+use bhr::scene::{
+    Camera, Chart, HotSpot, LensTables, Motion, Occluder, RayOutputKind, Region, Scene, View, Volume, VolumeResolution,
+};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [120, 80];
@@ -140,6 +142,29 @@ fn nothing_else_changes() {
         renderer.scene.view = View::Order;
         picture(&mut renderer, PixelFormat::R32F, SIZE, None, false);
         renderer.set_occluder(None);
+    }
+}
+
+/// Pixels that edges run through take the same rays behind a screen that hides nothing: what the disk hides from them
+/// does not decide how they are refined. Seen from within the horizon, where the edges of all images are in a few
+/// pixels.
+#[test]
+fn a_screen_that_hides_nothing_changes_no_edge() {
+    let size = [96, 54];
+    for (name, mut renderer) in both() {
+        let mut scene = Scene { time: 13.0, ..Scene::default() };
+        scene.hole.spin = 0.998;
+        scene.film.bloom = 0.0;
+        let (sin, cos) = 0.7_f64.sin_cos();
+        let position = DVec3::new(cos * cos, cos * sin, sin) * 0.949;
+        let (chart, motion) = (Chart::Rain, Motion::FreeFall);
+        scene.camera = Camera { position, forward: -position, fov_y: 2.3, chart, motion, ..Camera::plain() };
+        renderer.scene = scene;
+        let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, true);
+        renderer.set_occluder(Some(occluder(size, |_, _| f32::INFINITY)));
+        let same = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, true);
+        renderer.set_occluder(None);
+        assert_eq!(differing(&plain, &same), 0, "{name}");
     }
 }
 

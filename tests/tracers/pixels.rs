@@ -4,10 +4,10 @@
 //! taken, each in one way; `./tests/run all` takes all of them in all ways. The GPU is whatever adapter comes first.
 
 use crate::frames::{Lent, cpu, floats, gpu, picture};
-use crate::random::runs_all;
+use crate::random::{Random, count_from, runs_all};
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, LensTables, Method, Region, Scene, Sky, View};
+use bhr::scene::{Camera, LensTables, Method, Motion, Region, Scene, Sky, View};
 use glam::{DMat3, DQuat, DVec3};
 
 /// How much finer the frames are that pixels are held against: 64 of their pixels for one.
@@ -49,6 +49,17 @@ const SIGHTS: [Sight; 14] = [
     Sight { softness: 0.4, ..sight(0.0, 26.0, 5.5, 45.0, true, Some(0.0)) },
     Sight { softness: 0.2, ..sight(0.9, 26.0, 10.0, 45.0, true, Some(0.0)) },
 ];
+
+/// Any view of a hole from without, with the sky or a disk or both.
+fn random_sight(random: &mut Random) -> Sight {
+    let spin = random.pick(&[0.0, 0.3, 0.7, 0.9, 0.95, 0.998]);
+    let r = random.log_range(6.0, 60.0);
+    // The shadow is some 10 / r wide, and takes a sixth to a half of the frame's height.
+    let fov = (10.0 / r * random.range(2.0, 6.0)).atan().to_degrees();
+    let (sky, disk) = random.pick(&[(true, None), (true, Some(0.0)), (false, Some(0.0)), (false, Some(1.0))]);
+    let (elevation, softness) = (random.range(-80.0, 80.0), random.pick(&[0.0, 0.4]));
+    Sight { size: [200, 112], softness, ..sight(spin, r, elevation, fov, sky, disk) }
+}
 
 impl Sight {
     fn scene(&self, method: Method) -> Scene {
@@ -111,7 +122,11 @@ fn part(renderer: &mut Renderer, full: [u32; 2], origin: [u32; 2], size: [u32; 2
 }
 
 fn whole(renderer: &mut Renderer, sight: &Sight, finer: u32) -> Part {
-    part(renderer, sight.size, [0, 0], sight.size, finer)
+    whole_of(renderer, sight.size, finer)
+}
+
+fn whole_of(renderer: &mut Renderer, size: [u32; 2], finer: u32) -> Part {
+    part(renderer, size, [0, 0], size, finer)
 }
 
 /// Shares of the pixels whose light is off by more than 5, 20 and 50 % of the larger of the truth and 0.3 % of the
@@ -140,6 +155,8 @@ fn taken<const N: usize>(sights: [Sight; N], everyday: &[usize]) -> Vec<(Sight, 
 const MOST_OFF: [f64; 3] = [1e-2, 1.5e-3, 2e-4];
 /// The shares in everyday tests: the most that the library has been brought to so far.
 const MOST_OFF_EVERYDAY: [f64; 3] = [2e-2, 2.5e-3, 5e-4];
+/// The same in random views, which are taken in fewer pixels.
+const MOST_OFF_ANYWHERE: [f64; 3] = [8e-2, 1e-2, 2e-3];
 
 fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
     let mut failed = Vec::new();
@@ -162,6 +179,60 @@ fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
         }
     }
     assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Views that nobody chose, as far as the library has been brought for those that somebody did.
+fn pixels_of_random_views_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
+    let mut random = Random(20_261_129);
+    let mut failed = Vec::new();
+    for _ in 0..count_from("BHR_TEST_SIGHTS", 2, 40) {
+        let sight = random_sight(&mut random);
+        renderer.scene = sight.scene(Method::Auto);
+        let truth = whole(&mut renderer, &sight, FINER);
+        let method = random.pick(&[Method::Auto, Method::Adaptive]);
+        renderer.scene = sight.scene(method);
+        let percent = shares_off(&whole(&mut renderer, &sight, 1), &truth).map(|share| 100.0 * share);
+        println!("{tracer} {method:?} {sight:?}: {percent:.3?} % off by more than 5, 20, 50 %");
+        if percent.iter().zip(MOST_OFF_ANYWHERE).any(|(share, most)| *share > 100.0 * most) {
+            failed.push(format!("{tracer} {method:?} {sight:?} {percent:.3?}"));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Frames of a hole that hardly spins are those of one that does not, though other formulas tell where the critical
+/// curve is: also seen from the photon sphere, where it is at right angles to the radius, and by observers that fall.
+fn a_hole_that_hardly_spins_looks_like_one_that_does_not(tracer: &str, mut renderer: Lent) {
+    const SIZE: [u32; 2] = [48, 32];
+    let mut random = Random(3);
+    let count = count_from("BHR_TEST_NEAR_SIGHTS", 12, 200);
+    let mut off = 0;
+    for i in 0..count {
+        let mut scene = Scene::plain();
+        let away = random.direction();
+        let position = away * if i % 3 == 0 { 3.0 } else { random.range(2.05, 5.0) };
+        let other = random.direction();
+        let forward = random.pick(&[other, 0.4 * other - away, away.cross(other)]);
+        let motion = random.pick(&[Motion::FreeFall, Motion::FreeFall, Motion::Static]);
+        let (fov_y, up) = (random.pick(&[0.6, 1.0, 1.6, 2.3]), DVec3::new(0.1, 0.2, 1.0));
+        scene.camera = Camera { position, forward, up, fov_y, motion, ..Camera::plain() };
+        scene.sky.flags = Sky::MILKY_WAY;
+        scene.disk = scene.disk.filter(|_| i % 2 == 1);
+        scene.quality.lens_tables = LensTables::Never;
+        let frames = [0.0, 1e-9].map(|spin| {
+            renderer.scene = scene.clone();
+            renderer.scene.hole.spin = spin;
+            whole_of(&mut renderer, SIZE, 1).light
+        });
+        let least = 0.01 * frames[0].iter().copied().fold(0.0, f64::max);
+        let pairs = frames[0].iter().zip(&frames[1]);
+        let here = pairs.filter(|(still, spun)| (*still - *spun).abs() > 0.5 * still.max(least)).count();
+        if here > 0 {
+            println!("{tracer} {motion:?} r {:.3}, fov {fov_y}: {here} pixels differ", position.length());
+        }
+        off += here;
+    }
+    assert!(off * 6 <= count, "{tracer}: {off} pixels in {count} frames");
 }
 
 /// The sky beside the shadow: centres of the pixels of row 0 are captured and those of a neighbour escape, row 1 is
@@ -292,6 +363,27 @@ fn pixels_are_the_means_of_finer_frames_cpu() {
 #[ignore = "in tests/run all; everyday: the CPU's pixels are such means, and both tracers agree"]
 fn pixels_are_the_means_of_finer_frames_gpu() {
     pixels_are_the_means_of_finer_frames("gpu", gpu());
+}
+
+#[test]
+fn pixels_of_random_views_are_the_means_of_finer_frames_cpu() {
+    pixels_of_random_views_are_the_means_of_finer_frames("cpu", cpu());
+}
+
+#[test]
+#[ignore = "in tests/run all; everyday: the CPU's pixels are such means, and both tracers agree"]
+fn pixels_of_random_views_are_the_means_of_finer_frames_gpu() {
+    pixels_of_random_views_are_the_means_of_finer_frames("gpu", gpu());
+}
+
+#[test]
+fn a_hole_that_hardly_spins_looks_like_one_that_does_not_cpu() {
+    a_hole_that_hardly_spins_looks_like_one_that_does_not("cpu", cpu());
+}
+
+#[test]
+fn a_hole_that_hardly_spins_looks_like_one_that_does_not_gpu() {
+    a_hole_that_hardly_spins_looks_like_one_that_does_not("gpu", gpu());
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic, quadrature};
-use crate::scene::occluder::NO_THING;
+use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
@@ -81,6 +81,7 @@ fn all() -> Vec<(&'static str, String)> {
         OUTPUT_ORDER: u32 = RayOutputKind::Order;
         OUTPUT_DEFLECTION: u32 = RayOutputKind::Deflection;
         MOST_OUTPUTS: u32 = MOST_OUTPUTS;
+        BEYOND_ALL: f32 = BEYOND_ALL;
         NO_THING: f32 = NO_THING;
         FATE_CAPTURED: u32 = Fate::Captured;
         FATE_ESCAPED: u32 = Fate::Escaped;
@@ -110,6 +111,7 @@ fn all() -> Vec<(&'static str, String)> {
         KERR_ROWS_BELOW: u32 = kerr::ROWS_BELOW;
         KERR_ROWS_ABOVE: u32 = kerr::ROWS_ABOVE;
         KERR_CURVE: u32 = critical::CRITICAL_NODES;
+        AT_HORIZON: f32 = critical::AT_HORIZON;
         MARGIN_OF_ALL: u32 = critical::ByMargin::All;
         SWIFT_GAMMA: f32 = Observer::SWIFT;
         KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
@@ -280,6 +282,7 @@ fn all() -> Vec<(&'static str, String)> {
         MAX_SPREAD: f32 = filter::MAX_SPREAD;
         MOST_SPREAD: f32 = filter::MOST_SPREAD;
         WIDE_TAP: f32 = filter::WIDE_TAP;
+        TAP_TEXEL: f32 = filter::TAP_TEXEL;
         STRAIGHT: f32 = filter::STRAIGHT;
         WHOLE_SKY: f32 = filter::WHOLE_SKY;
         TINY_AXIS: f32 = filter::TINY_AXIS;

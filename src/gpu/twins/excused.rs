@@ -171,7 +171,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     // The text that src/gpu/kernel/wgsl.rs writes for a frame's own outputs.
     ("shade/outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
-    ("emit/occluder", "set_occluder", OCCLUDER),
+    ("emit/occluder", "set_occluder opaque_u_at", OCCLUDER),
     ("emit/shown_part", "beyond_occluder shown_stretch", OCCLUDER),
     ("shade/shade", "is_occluded", OCCLUDER),
     ("emit/plane", "plane_opacity", OUTPUTS),

@@ -26,6 +26,10 @@ pub const CRITICAL_NODES: usize = 512;
 /// so that every captured ray starts inward, and the curve stays away from the directions with n_r = 0.
 pub const NEAREST_OBSERVER: f64 = 1.03;
 
+/// Up to here, in radii of the retrograde photon orbit, the curve comes so near to the directions with n_r = 0 that the
+/// margin of inward rays alone is not even across it.
+const NEAR_OBSERVER: f64 = 2.0;
+
 /// Farthest observer, in M.
 pub const FARTHEST_OBSERVER: f64 = 1e5;
 
@@ -64,16 +68,16 @@ pub fn capture_margin(c: &Constants) -> f64 {
 }
 
 /// The part of 1/r+ within which the least potential is at the horizon.
-const AT_HORIZON: f64 = 1e-6;
+pub(crate) const AT_HORIZON: f64 = 1e-6;
 
 /// The rays whose level is that of their capture margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum ByMargin {
     None = 0,
-    /// Rays that move inwards: observers outside the photon region.
+    /// Rays that move inwards: observers far outside the photon region.
     Inward = 1,
-    /// All rays: observers within it, inside the horizon too, from where rays that move outwards may turn back.
+    /// All rays: observers near it and within, inside the horizon too, from where rays that move outwards may turn back.
     All = 2,
 }
 
@@ -92,28 +96,30 @@ impl CurveLevel {
     pub fn new(frame: &LocalFrame) -> Self {
         let (sin, cos) = if frame.a == 0.0 { critical_direction(frame.r, frame.rain) } else { (0.0, 1.0) };
         let by_margin = match () {
-            () if frame.a == 0.0 => ByMargin::None,
-            () if reaches(frame) => ByMargin::Inward,
-            () if frame.r > FARTHEST_OBSERVER => ByMargin::None,
+            () if frame.a == 0.0 || frame.r > FARTHEST_OBSERVER => ByMargin::None,
+            () if !frame.rain && frame.r > NEAR_OBSERVER * photon_orbit(-frame.a.abs()) => ByMargin::Inward,
             () => ByMargin::All,
         };
         Self { frame: *frame, critical: [sin, cos], by_margin }
     }
 
-    /// The level where that of all rays is that of their margin: rays that move inwards escape if they turn before they
-    /// fall in, those that move outwards if they do not turn.
+    /// The level where that of all rays is that of their margin: q - u', of a ray seen at frequency 1. Rays that move inwards escape if they
+    /// turn before they fall in, those that move outwards if they do not turn. P(u) less its minimum P(m) has a double
+    /// zero at m, so that its root q, positive farther out than m and negative farther in, is smooth where the observer
+    /// is at m itself: there the curve goes from rays that move inwards to those that move outwards. On the curve, where
+    /// P(m) = 0, u' is q.
     fn within(&self, n: DVec3) -> f64 {
         let Some((c, s)) = self.frame.start(n).filter(|(c, _)| c.energy > 0.0) else { return -1.0 };
-        let u = potential_minimum(&c);
-        let root = (1.0 - radial_potential(&c, u) / (c.energy * c.energy)).max(0.0).sqrt();
-        // Where P falls all the way to the horizon, its least value there tells rays on both sides of it.
-        let is_before = s.u < u && u * c.r_plus < 1.0 - AT_HORIZON;
-        match (s.du > 0.0, if s.du > 0.0 { s.u < u } else { is_before }) {
-            (true, true) => root - 1.0,
-            (true, false) => -1.0,
-            (false, true) => 1.0,
-            (false, false) => 1.0 - root,
-        }
+        let m = potential_minimum(&c);
+        let a2q = c.a * c.a * c.carter;
+        let rise = if m * c.r_plus < 1.0 - AT_HORIZON {
+            // (P(u) - P(m)) / (u - m)^2, by division of the polynomials.
+            let rest = c.a2e2 - c.k + m * (4.0 * c.b - 3.0 * a2q * m) + s.u * (2.0 * c.b - a2q * (s.u + 2.0 * m));
+            (m - s.u).powi(2) * rest
+        } else {
+            s.du * s.du - radial_potential(&c, m)
+        };
+        (rise.max(0.0).sqrt().copysign(m - s.u) - s.du) / c.nu_local
     }
 
     /// 0 on the curve, positive where rays escape, and nearly even across it: psi - psi_c, or, about a spinning hole,
@@ -373,6 +379,51 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Observers in the photon region, where the curve goes from rays that move inwards to those that move outwards, and
+    /// inside the horizon: rays on both sides have the fates that the level says, and it is even across the curve.
+    #[test]
+    fn levels_are_even_within_the_photon_region() {
+        let mut found = 0;
+        for (a, r, rain) in [
+            (1e-9, 3.0, false),
+            (0.3, 2.4, false),
+            (0.9, 3.0, false),
+            (0.5, 3.6, false),
+            (0.9, 1.9, true),
+            (0.9, 1.2, true),
+        ] {
+            let place = chart(r, 1.1, 0.4);
+            let frame = if rain { LocalFrame::rain(a, place).unwrap() } else { LocalFrame::new(a, place).unwrap() };
+            let level = CurveLevel::new(&frame);
+            for i in 0..24 {
+                let across =
+                    DVec3::Y * (TAU * f64::from(i) / 24.0).cos() + DVec3::Z * (TAU * f64::from(i) / 24.0).sin();
+                let direction = |psi: f64| DVec3::NEG_X * psi.cos() + across * psi.sin();
+                let (mut low, mut high) = (0.0, 3.1);
+                if level.at(direction(high)) < 0.0 || level.at(direction(low)) > 0.0 {
+                    continue;
+                }
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    *(if level.at(direction(middle)) > 0.0 { &mut high } else { &mut low }) = middle;
+                }
+                for (part, fate) in [(-1e-4, Fate::Captured), (1e-4, Fate::Escaped)] {
+                    let (c, start) = frame.start(direction(low + part)).unwrap();
+                    let traced = trace(&c, &start, &Settings { delay: false, ..Settings::exact(a) });
+                    assert_eq!(traced.fate, fate, "a {a} r {r} {i} {part}");
+                }
+                let at = |part: f64| level.at(direction(low + part));
+                let slope = 0.5 * (at(1e-3) - at(-1e-3)) / 1e-3;
+                for part in [-0.03, 0.03] {
+                    let even = (at(part) / (slope * part) - 1.0).abs();
+                    assert!(slope > 0.1 && even < 0.3, "a {a} r {r} {i}, {part}: {} {slope}", at(part));
+                }
+                found += 1;
+            }
+        }
+        assert!(found > 120, "{found}");
     }
 
     /// Without spin also inside the photon sphere and the horizon.
