@@ -6,7 +6,6 @@
 #import constants
 #import camera/observer
 #import camera/projection
-#import emit/occluder
 #import geodesic/geodesic
 #import geodesic/trace
 #import lens/kerr
@@ -42,11 +41,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     if lookup.cell.y < lens.outer_rows {
         record = with_looked_up_sky(record);
     }
-    if OCCLUDED {
-        set_occluder(pixel_place(id));
-    }
     let settings = Settings(frame.step, frame.tolerance, frame.max_steps, frame.max_crossings, frame.capture_u,
-        opaque_u_at());
+        frame.opaque_u);
     for (var i = 0u; i < CROSSINGS_KEPT; i += 1u) {
         deferred_crossings[i] = vec3<f32>(0.0);
     }

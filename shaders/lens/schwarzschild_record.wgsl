@@ -279,6 +279,11 @@ fn rewind_crossings() {
     lookup.order = 0u;
 }
 
+// Without spin the difference of two samples' directions tells by how much they turn.
+fn sample_turn() -> f32 {
+    return UNKNOWN_TURN;
+}
+
 // No record is pending here.
 fn defer_pixel(id: vec2<u32>) {
 }

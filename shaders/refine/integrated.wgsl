@@ -28,6 +28,8 @@ var<private> kept_given: u32;
 // The constants of the ray.
 var<private> kept_constants: Constants;
 var<private> kept_ratio: f32;
+// RayTrace::turned of the ray; UNKNOWN_TURN without spin, and unless it escaped.
+var<private> kept_turn: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
@@ -69,6 +71,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
     }
     kept_order = 0u;
     kept_count = 0u;
+    kept_turn = UNKNOWN_TURN;
     if PARTS {
         kept_given = 0u;
     }
@@ -95,6 +98,9 @@ fn integrated_record(id: vec2<u32>) -> Record {
         if traced.fate == FATE_ESCAPED {
             let end = escape(begin.c, traced);
             record.sky = chart_direction(end.n, end.drag);
+            if SPINNING {
+                kept_turn = azimuth_turned(begin.c, end.drag - begin.state.drag, end.delay);
+            }
             record.sky_redshift = begin.frequency_ratio / record.energy;
             // Unknown, but in directions that exist.
             record.footprint = footprint_of(record.sky, vec3<f32>(0.0), vec3<f32>(0.0));
@@ -106,6 +112,13 @@ fn integrated_record(id: vec2<u32>) -> Record {
         kept_media[min(kept_given, CROSSINGS_KEPT)] = medium;
     }
     return record;
+}
+
+// Constants::azimuth_turned of a ray about a spinning hole.
+fn azimuth_turned(c: Constants, drag: f32, tau: f32) -> f32 {
+    let root = sqrt(max(c.k, 0.0));
+    let turned = drag + root * tau * select(1.0, -1.0, c.angular_momentum < 0.0);
+    return select(UNKNOWN_TURN, turned, abs(c.angular_momentum) > AROUND_AXIS * root);
 }
 
 fn more_integrated() -> bool {

@@ -26,6 +26,10 @@ fn with_sky(record: Record) -> Record {
     return with_looked_up_sky(record);
 }
 
+fn sample_turn() -> f32 {
+    return select(UNKNOWN_TURN, kept_turn, integrated);
+}
+
 fn next_crossing() -> Crossing {
     if !integrated {
         return next_looked_up();

@@ -23,6 +23,7 @@
 #requires fn next_crossing() -> Crossing
 #requires fn rewind_crossings()
 #requires fn with_sky(record: Record) -> Record
+#requires fn sample_turn() -> f32
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
 // The structure of matter with depth: emit/clouds.wgsl.
@@ -56,10 +57,12 @@ const NO_LANE: u32 = LANES;
 const LANE_ORDERS: u32 = 8u;
 
 // The sample of each thread: u of its crossings by order, 0 where there is none, and with FOOTPRINTS their azimuth and
-// delay; its sky direction, and its fate as a number; its light times its share of the pixel.
+// delay; its sky direction, and its fate as a number; how far it turned (sample_turn); its light times its share of the
+// pixel.
 var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
 var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
 var<workgroup> lane_sky: array<vec4<f32>, LANES>;
+var<workgroup> lane_turn: array<f32, LANES>;
 var<workgroup> lane_light: array<vec4<f32>, LANES>;
 // The numbers of the first pixel of the workgroup's list and of the one behind its last.
 var<workgroup> listed: vec2<u32>;
@@ -120,6 +123,7 @@ fn refine_sample(entry: u32, end: u32) {
         record = with_sky(record);
     }
     lane_sky[lane] = vec4<f32>(record.sky, f32(record.fate));
+    lane_turn[lane] = sample_turn();
     for (var k = 0u; k < LANE_ORDERS; k += 1u) {
         lane_u[lane * LANE_ORDERS + k] = 0.0;
     }
@@ -354,7 +358,9 @@ fn mean_light() -> vec4<f32> {
 fn cell_footprint(sky: vec3<f32>) -> Footprint {
     let dx = change_of_sky(sky, beside.xy);
     let dy = change_of_sky(sky, beside.zw);
-    var footprint = footprint_of(sky, dx.xyz, dy.xyz);
+    let across = with_whole_turns(dx.xyz, sky, change_of_turn(beside.xy));
+    let along = with_whole_turns(dy.xyz, sky, change_of_turn(beside.zw));
+    var footprint = footprint_of(sky, across, along);
     footprint.dx = select(vec2<f32>(1e30), footprint.dx, dx.w != 0.0);
     footprint.dy = select(vec2<f32>(1e30), footprint.dy, dy.w != 0.0);
     return footprint;
@@ -373,6 +379,29 @@ fn change_of_sky(here: vec3<f32>, others: vec2<u32>) -> vec4<f32> {
     let first = select(here, lane_sky[lanes.x].xyz, there.x);
     let last = select(here, lane_sky[lanes.y].xyz, there.y);
     return vec4<f32>((last - first) * select(1.0, 0.5, all(there)), select(0.0, 1.0, any(there)));
+}
+
+// The change of sample_turn from one cell to the next, as change_of_sky, if that spans more than half a turn; else 0.
+fn change_of_turn(others: vec2<u32>) -> f32 {
+    if !SPINNING {
+        return 0.0;
+    }
+    let lanes = min(others, vec2<u32>(LANES - 1u));
+    let escaped = vec2<bool>(has_escaped(lanes.x), has_escaped(lanes.y));
+    let there = escaped & (others < vec2<u32>(NO_LANE));
+    let here = lane_turn[lane];
+    let first = select(here, lane_turn[lanes.x], there.x);
+    let last = select(here, lane_turn[lanes.y], there.y);
+    let known = abs(here) < UNKNOWN_TURN && abs(first) < UNKNOWN_TURN && abs(last) < UNKNOWN_TURN;
+    let change = (last - first) * select(1.0, 0.5, all(there));
+    return select(0.0, change, known && abs(last - first) > PI);
+}
+
+// A cell's change of the sky direction `d`, of which the part about the hole's axis is `turn`, unless that is 0.
+fn with_whole_turns(change: vec3<f32>, d: vec3<f32>, turn: f32) -> vec3<f32> {
+    let around = vec3<f32>(-d.y, d.x, 0.0);
+    let length2 = max(dot(around, around), 1e-30);
+    return change + around * select(turn - dot(change, around) / length2, 0.0, turn == 0.0);
 }
 
 // u of the crossing of `order` in a lane; 0 where there is none.

@@ -13,6 +13,10 @@ fn with_sky(record: Record) -> Record {
     return record;
 }
 
+fn sample_turn() -> f32 {
+    return kept_turn;
+}
+
 fn next_crossing() -> Crossing {
     return next_integrated();
 }

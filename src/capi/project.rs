@@ -39,8 +39,10 @@ pub struct BhrProjectedPoint {
     pub y: f64,
     /// The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y.
     pub ray: BhrRay,
-    /// How much larger, in solid angle, something small at the point looks to the camera than without the hole, the
-    /// camera's motion included; negative where the image is mirrored. It grows without limit near a caustic.
+    /// The solid angle in which the camera, moving as it does, sees something small at the point, over A / distance^2,
+    /// that without the hole; negative where the image is mirrored. A is its area square to the light, as the ZAMO
+    /// there measures it (any observer there finds the same); its area in chart coordinates is less near the hole,
+    /// without spin by sqrt(1 - 2 M / r) where it lies along the radius. It grows without limit near a caustic.
     pub magnification: f64,
     /// Coordinate time (in chart RAIN rain time) since the light left the point, scene lengths; NaN from inside the
     /// horizon in chart STATIC.

@@ -127,6 +127,7 @@ impl<'a> Recorder<'a> {
         let mut record = Record {
             fate: traced.fate,
             direction: traced.direction,
+            turned: traced.turned,
             steps: traced.steps,
             plane_u: traced.crossings.first().map_or(0.0, |c| c.u),
             media,

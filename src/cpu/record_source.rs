@@ -11,7 +11,7 @@ pub enum RecordSource<'a> {
 }
 
 impl<'a> RecordSource<'a> {
-    /// What traces the rays that no table holds.
+    /// The recorder that traces the rays of which no table holds the records.
     pub fn recorder(&self) -> &Recorder<'a> {
         match self {
             Self::Traced(recorder) => recorder,

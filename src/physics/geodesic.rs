@@ -105,6 +105,10 @@ pub struct State {
     pub delay: f64,
 }
 
+/// The part of sqrt(K) that L must be for N to turn about the axis nearly as evenly as it turns at all: a ray that
+/// passes close to the axis gains half a turn there, and on the axis' other side loses one.
+pub(crate) const AROUND_AXIS: f64 = 0.5;
+
 impl Constants {
     /// The constants of light, in the chart of Boyer and Lindquist.
     pub fn new(a: f64, energy: f64, angular_momentum: f64, carter: f64, nu_local: f64, u_observer: f64) -> Self {
@@ -372,6 +376,14 @@ impl Constants {
             return azimuth;
         }
         azimuth - self.chart_offsets(there.u).azimuth
+    }
+
+    /// The azimuth, rad, by which a ray turns about the axis in `tau`, to a part of a turn, whole turns included: the
+    /// drag, and sqrt(K) tau for the turn of N. NaN without spin, for which no one asks, and for steep rays.
+    pub fn azimuth_turned(&self, drag: f64, tau: f64) -> f64 {
+        let root = self.k.max(0.0).sqrt();
+        let even = self.a != 0.0 && self.angular_momentum.abs() > AROUND_AXIS * root;
+        if even { drag + root * tau * self.angular_momentum.signum() } else { f64::NAN }
     }
 
     /// The clock's time at the observer less the t at which light left `there`, outside the horizon: matter keeps t.

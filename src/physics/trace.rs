@@ -87,6 +87,8 @@ pub struct RayTrace {
     /// sqrt(K) tau, the angle about the hole that a ray without spin sweeps, rad: to infinity, to the horizon, or to
     /// `Settings::capture_u` if that is farther out. NaN with spin, and for rays that are unresolved or hidden.
     pub swept: f64,
+    /// `Constants::azimuth_turned` from the observer to infinity; NaN unless escaped.
+    pub turned: f64,
     pub steps: u32,
     pub crossings: ArrayVec<PlaneCrossing, CROSSINGS_KEPT>,
     /// The orders of crossings within the horizon, a bit each; they are not kept.
@@ -96,7 +98,8 @@ pub struct RayTrace {
 impl RayTrace {
     /// A ray of which nothing is known but its fate.
     pub fn of(fate: Fate) -> Self {
-        Self { fate, direction: DVec3::ZERO, swept: f64::NAN, steps: 0, crossings: ArrayVec::new(), inside: 0 }
+        let (swept, turned) = (f64::NAN, f64::NAN);
+        Self { fate, direction: DVec3::ZERO, swept, turned, steps: 0, crossings: ArrayVec::new(), inside: 0 }
     }
 }
 
@@ -356,6 +359,7 @@ pub fn trace_visited(
             result.fate = Fate::Escaped;
             result.direction = state.chart_direction();
             result.swept = swept(tau + h);
+            result.turned = c.azimuth_turned(state.drag - start.drag, tau + h);
         }
         End::Captured => {
             result.fate = Fate::Captured;
@@ -513,12 +517,10 @@ mod tests {
             let (a, r) = (c.a, 1.0 / s.u);
             let sum = r * r + a * a;
             let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
-            let n_z = s.n.z;
             sum * (c.energy * sum - a * c.angular_momentum) / delta
-                + a * (c.angular_momentum - a * c.energy * (1.0 - n_z * n_z))
+                + a * (c.angular_momentum - a * c.energy * (1.0 - s.n.z * s.n.z))
         };
-        let n = 20_000;
-        let h = tau / f64::from(2 * n);
+        let (n, h) = (20_000, tau / 40_000.0);
         let (mut state, mut sum) = (*start, 0.0);
         for _ in 0..n {
             let middle = step(Method::Nystrom, c, &state, h, false).0;

@@ -18,6 +18,8 @@ pub struct Record {
     pub direction: DVec3,
     /// Change of `direction` to the next pixel right and down; 1e30 where it is not known.
     pub footprint: [DVec3; 2],
+    /// `RayTrace::turned`; NaN where it is not known, as of rays that were looked up.
+    pub turned: f64,
     /// nu(camera) / nu(at infinity); NaN unless escaped.
     pub sky_redshift: f64,
     /// E and L, scaled so that the local frame's observer measures 1.
@@ -48,6 +50,7 @@ impl Record {
             fate: Fate::Captured,
             direction: DVec3::ZERO,
             footprint: [UNKNOWN_DIRECTION; 2],
+            turned: f64::NAN,
             sky_redshift: f64::NAN,
             energy: 1.0,
             angular_momentum: 0.0,
@@ -73,6 +76,7 @@ impl Record {
         self.fate = Fate::Captured;
         self.direction = DVec3::ZERO;
         self.footprint = [UNKNOWN_DIRECTION; 2];
+        self.turned = f64::NAN;
         self.sky_redshift = f64::NAN;
         self.energy = 1.0;
         self.angular_momentum = 0.0;

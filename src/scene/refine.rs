@@ -79,6 +79,8 @@ pub(crate) const CURVE_REACH: f64 = 0.85;
 /// distance of one pixel; the thin images of higher orders lie where it turns fast.
 pub(crate) const FAST_TURN: f64 = 0.75;
 pub(crate) const TURN: f64 = 0.25;
+/// A turn of a ray that is not known, in WGSL, where NaN may be taken for any number.
+pub(crate) const UNKNOWN_TURN: f64 = 1e30;
 /// The change of u from pixel to pixel, in widths of the fading of a disk's edge, above which the edge shows: below it
 /// little of the disk's light comes into a pixel from beyond the edge.
 pub(crate) const FADING_CHANGE: f64 = 0.1;

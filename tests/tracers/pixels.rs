@@ -155,7 +155,7 @@ fn taken<const N: usize>(sights: [Sight; N], everyday: &[usize]) -> Vec<(Sight, 
 const MOST_OFF: [f64; 3] = [1e-2, 1.5e-3, 2e-4];
 /// The shares in everyday tests: the most that the library has been brought to so far.
 const MOST_OFF_EVERYDAY: [f64; 3] = [2e-2, 2.5e-3, 5e-4];
-/// The same in random views, which are taken in fewer pixels.
+/// These shares in random views, which are taken in fewer pixels.
 const MOST_OFF_ANYWHERE: [f64; 3] = [8e-2, 1e-2, 2e-3];
 
 fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
@@ -233,6 +233,24 @@ fn a_hole_that_hardly_spins_looks_like_one_that_does_not(tracer: &str, mut rende
         off += here;
     }
     assert!(off * 6 <= count, "{tracer}: {off} pixels in {count} frames");
+}
+
+/// Beside the side of the shadow where a fast hole carries light along, rays of one pixel wind about the axis by many
+/// turns. Each sample sees its cell's arc of the sky, not what lies in its own direction, which may be anything.
+fn rays_that_wind_see_the_sky_all_round(tracer: &str, mut renderer: Lent) {
+    let sight = Sight { size: [240, 136], ..sight(0.998, 25.0, 3.0, 35.0, true, None) };
+    let mut scene = sight.scene(Method::Auto);
+    scene.quality.lens_tables = LensTables::Never;
+    scene.sky.orientation = DQuat::IDENTITY;
+    renderer.scene = scene;
+    // The critical curve runs down this column.
+    let (origin, size) = ([102, 60], [1, 16]);
+    let truth = part(&mut renderer, sight.size, origin, size, FINER);
+    let seen = part(&mut renderer, sight.size, origin, size, 1);
+    let off = seen.light.iter().zip(&truth.light).map(|(seen, truth)| (seen / truth - 1.0).abs());
+    let mean = off.clone().sum::<f64>() / off.len() as f64;
+    println!("{tracer}: off by {mean:.3} on average, {:.2?}", off.collect::<Vec<_>>());
+    assert!(mean < 0.4, "{tracer}: {mean}");
 }
 
 /// The sky beside the shadow: centres of the pixels of row 0 are captured and those of a neighbour escape, row 1 is
@@ -384,6 +402,16 @@ fn a_hole_that_hardly_spins_looks_like_one_that_does_not_cpu() {
 #[test]
 fn a_hole_that_hardly_spins_looks_like_one_that_does_not_gpu() {
     a_hole_that_hardly_spins_looks_like_one_that_does_not("gpu", gpu());
+}
+
+#[test]
+fn rays_that_wind_see_the_sky_all_round_cpu() {
+    rays_that_wind_see_the_sky_all_round("cpu", cpu());
+}
+
+#[test]
+fn rays_that_wind_see_the_sky_all_round_gpu() {
+    rays_that_wind_see_the_sky_all_round("gpu", gpu());
 }
 
 #[test]

@@ -52,6 +52,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         fate,
         direction: DVec3::new(x, y, z),
         footprint: [DVec3::new(xx, xy, xz), DVec3::new(yx, yy, yz)],
+        turned: f64::NAN,
         sky_redshift: if fate == Fate::Escaped { redshift } else { f64::NAN },
         energy,
         angular_momentum: momentum,

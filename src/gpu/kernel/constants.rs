@@ -140,6 +140,8 @@ fn all() -> Vec<(&'static str, String)> {
         CURVE_REACH: f32 = refine::CURVE_REACH;
         FAST_TURN: f32 = refine::FAST_TURN;
         TURN: f32 = refine::TURN;
+        UNKNOWN_TURN: f32 = refine::UNKNOWN_TURN;
+        AROUND_AXIS: f32 = geodesic::AROUND_AXIS;
         CURVE_SAMPLES: u32 = refine::CURVE_SAMPLES;
         NARROWEST: f32 = refine::NARROWEST;
         CAPTURED_DENSITY: f32 = refine::CAPTURED_DENSITY;

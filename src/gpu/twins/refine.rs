@@ -4,7 +4,7 @@
 use super::inputs::Inputs;
 use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
-use crate::cpu::refine::LevelAbout;
+use crate::cpu::refine::{LevelAbout, with_whole_turns};
 use crate::physics::lens::critical::{CurveLevel, potential_minimum};
 use crate::scene::refine::{
     CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, NARROWEST, Strips, beside_quarter, covered, quarter_place,
@@ -22,6 +22,7 @@ fn next_crossing() -> Crossing { var crossing: Crossing; return crossing; }
 fn more_crossings() -> bool { return false; }
 fn with_sky(record: Record) -> Record { return record; }
 fn rewind_crossings() {}
+fn sample_turn() -> f32 { return UNKNOWN_TURN; }
 fn take_light(id: vec2<u32>, light: vec4<f32>) {}
 fn enter_samples() {
     enter_scene();
@@ -166,6 +167,20 @@ pub fn group() -> Group {
                 o.near(share, 1.0);
                 o.near(middle, 1.0);
             },
+            ROUNDING,
+        ),
+        twin(
+            file,
+            "with_whole_turns",
+            "out3(with_whole_turns(in3(0u), in3(3u), in1(6u)));",
+            |i| {
+                i.direction();
+                i.direction();
+                let turn = i.random.even(-20.0, 20.0);
+                let none = i.random.below(4) == 0;
+                i.push(if none { 0.0 } else { turn });
+            },
+            |i, o| o.all(with_whole_turns(i.v3(0), i.v3(3), i.x(6)).to_array(), 20.0),
             ROUNDING,
         ),
         twin(

@@ -77,7 +77,8 @@ pub enum ByMargin {
     None = 0,
     /// Rays that move inwards: observers far outside the photon region.
     Inward = 1,
-    /// All rays: observers near it and within, inside the horizon too, from where rays that move outwards may turn back.
+    /// All rays: observers near it and within, inside the horizon too, from where rays that move outwards may turn
+    /// back.
     All = 2,
 }
 
@@ -103,11 +104,11 @@ impl CurveLevel {
         Self { frame: *frame, critical: [sin, cos], by_margin }
     }
 
-    /// The level where that of all rays is that of their margin: q - u', of a ray seen at frequency 1. Rays that move inwards escape if they
-    /// turn before they fall in, those that move outwards if they do not turn. P(u) less its minimum P(m) has a double
-    /// zero at m, so that its root q, positive farther out than m and negative farther in, is smooth where the observer
-    /// is at m itself: there the curve goes from rays that move inwards to those that move outwards. On the curve, where
-    /// P(m) = 0, u' is q.
+    /// The level where that of all rays is that of their margin: q - u', of a ray seen at frequency 1. Rays that move
+    /// inwards escape if they turn before they fall in, those that move outwards if they do not turn. P(u) less its
+    /// minimum P(m) has a double zero at m, so that its root q, positive farther out than m and negative farther in, is
+    /// smooth where the observer is at m itself: there the curve goes from rays that move inwards to those that move
+    /// outwards. On the curve, where P(m) = 0, u' is q.
     fn within(&self, n: DVec3) -> f64 {
         let Some((c, s)) = self.frame.start(n).filter(|(c, _)| c.energy > 0.0) else { return -1.0 };
         let m = potential_minimum(&c);
@@ -381,8 +382,8 @@ mod tests {
         }
     }
 
-    /// Observers in the photon region, where the curve goes from rays that move inwards to those that move outwards, and
-    /// inside the horizon: rays on both sides have the fates that the level says, and it is even across the curve.
+    /// Observers in the photon region, where the curve goes from rays that move inwards to those that move outwards,
+    /// and inside the horizon: rays on both sides have the fates that the level says, and it is even across the curve.
     #[test]
     fn levels_are_even_within_the_photon_region() {
         let mut found = 0;

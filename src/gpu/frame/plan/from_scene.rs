@@ -100,6 +100,9 @@ impl Planner<'_> {
             rows: target == PixelTarget::Rows,
         };
         let record_setup = self.record_setup(scene, &emitters, &lens, &settings, &request.region, projection);
+        // The kernel that integrates what Kerr's tables do not hold knows no things of the host's: it looks behind all.
+        let blind = scene.occluder.is_some() && record_setup.source.maker == RecordMaker::Kerr;
+        let settings = Settings { opaque_u: settings.opaque_u.filter(|_| !blind), ..settings };
         let uniform = FrameUniform::new(scene, &emitters, &lens, &settings, record_setup.crossings)?;
         let structure = self.structure(&emitters, scene.hole.spin, &lens);
         let clouds = structure.iter().any(Option::is_some).then(|| CloudsUniform::new(&structure));
