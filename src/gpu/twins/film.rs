@@ -304,7 +304,7 @@ pub fn group() -> Group {
         ),
         twin(
             "film/grade",
-            "graded",
+            "graded grain_noise grain_cell hash",
             "enter_film(); out3(graded(in3(52u), word(55u), word(56u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
