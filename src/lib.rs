@@ -35,6 +35,7 @@ pub mod physics;
 mod platform;
 mod random;
 mod recent;
+mod accumulation;
 pub mod renderer;
 pub mod scene;
 pub mod sky;

@@ -3,11 +3,11 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
-mod accumulation;
 mod first;
 mod made;
 mod presets;
 
+use crate::accumulation::Accumulation;
 use crate::attempt;
 use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
@@ -69,7 +69,7 @@ pub struct Renderer {
     /// How the pixels were made that hosts may have.
     made: MadeFrames,
     /// Frames that are being added up.
-    accumulation: Option<accumulation::Accumulation>,
+    accumulation: Option<Accumulation>,
     /// How long the presets' frames with depth take, as far as that was measured.
     depth_costs: [Vec<DepthCost>; Preset::COUNT],
     /// The threads for jobs, from the first job on.
@@ -327,7 +327,8 @@ impl Renderer {
     }
 
     /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a spin beyond those of
-    /// frames; a region with bloom or a beam, or with a film that measures the frame; a format that does not go with the view.
+    /// frames; a region with bloom or a beam, or with a film that measures the frame; a format that does not go with
+    /// the view.
     fn request(
         &self,
         format: PixelFormat,
@@ -415,6 +416,55 @@ impl Renderer {
             error
         })?;
         self.stats.publish(stats, start.elapsed());
+        Ok(())
+    }
+
+    /// Begins to add frames of `size` up, in place of those that were added before: the host changes the scene between
+    /// them, for motion blur and depth of field. Errors: INVALID_ARGUMENT for a size beyond images', OUT_OF_MEMORY.
+    pub fn begin_accumulation(&mut self, size: [u32; 2], transparent: bool) -> Result<()> {
+        self.accumulation = Some(Accumulation::new(size, transparent)?);
+        Ok(())
+    }
+
+    /// Forgets the frames that were added.
+    pub fn drop_accumulation(&mut self) {
+        self.accumulation = None;
+    }
+
+    /// Renders the scene as it is, a whole frame, and adds its light times `weight`. After an error nothing is added.
+    ///
+    /// Errors: INVALID_STATE where nothing was begun, or too much was added; INVALID_ARGUMENT for a weight out of
+    /// range; as [`Self::render`].
+    pub fn accumulate(&mut self, weight: f64, progress: &mut Progress<'_>) -> Result<()> {
+        let start = Instant::now();
+        let begun = self.accumulation.as_ref().ok_or_else(not_accumulating)?;
+        begun.check(weight)?;
+        let request = self.request(PixelFormat::Rgba32F, begun.size, begun.transparent, None)?;
+        // The frames are put back whatever happens.
+        let mut begun = self.accumulation.take().ok_or_else(not_accumulating)?;
+        let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| begun.take(tile, pixels, row_bytes);
+        let rendered = self
+            .behind(&request.region, [request.width, request.height])
+            .and_then(|scene| self.tracer.lock().render(&scene, &request, &mut sink, progress));
+        if rendered.is_ok() {
+            begun.add(weight);
+        }
+        self.accumulation = Some(begun);
+        self.stats.publish(rendered?, start.elapsed());
+        Ok(())
+    }
+
+    /// Develops the mean of the frames that were added, by the film as it is, into `target`, and forgets them. After an
+    /// error they are kept.
+    ///
+    /// Errors: INVALID_STATE where no frame was added; as `Accumulation::develop`.
+    pub fn end_accumulation(&mut self, target: &mut ImageMut<'_>, transparent: bool) -> Result<()> {
+        let start = Instant::now();
+        let lit = Scene { view: View::Light, ..self.scene.clone() };
+        let begun = self.accumulation.as_mut().ok_or_else(not_accumulating)?;
+        let auto_ev = begun.develop((&lit.film, lit.shown_lut().map(Arc::as_ref)), target, transparent)?;
+        self.accumulation = None;
+        self.stats.publish(FrameStats { auto_ev, ..FrameStats::default() }, start.elapsed());
         Ok(())
     }
 
@@ -536,4 +586,8 @@ impl Renderer {
     pub fn trace_path(&self, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
         crate::scene::host_rays::trace_path(&self.scene, ray, capacity)
     }
+}
+
+fn not_accumulating() -> Error {
+    Error::state("no frames are being accumulated; bhr_begin_accumulation begins")
 }

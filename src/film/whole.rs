@@ -19,8 +19,8 @@ const LIGHT: &str = "the light of rows that are developed";
 /// Takes rows of packed pixels, by their first one.
 pub type RowSink<'a> = dyn FnMut(u32, &[u8]) -> Result<()> + 'a;
 
-/// Develops `light`, rows of `width`, with a LUT (`Scene::shown_lut`); the stops that auto exposure added. On the current pool. Errors: OUT_OF_MEMORY;
-/// those of the sink.
+/// Develops `light`, rows of `width`, with a LUT (`Scene::shown_lut`); the stops that auto exposure added. On the
+/// current pool. Errors: OUT_OF_MEMORY; those of the sink.
 pub fn develop_whole(
     (film, lut): (&Film, Option<&Lut>),
     (format, transparent): (PixelFormat, bool),

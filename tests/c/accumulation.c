@@ -116,7 +116,7 @@ static void adds_up(BhrContext *context) {
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "bhr_begin_accumulation", bhr_end_accumulation(context, &whole));
 }
 
-/* What is wrong is refused, whatever the order, and what was added stays. */
+/* Mistakes are refused, whatever the order, and the frames that were added stay. */
 static void refuses(BhrContext *context) {
     BhrImage image = picture(after);
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_begin_accumulation(NULL, WIDTH, HEIGHT, 0));

@@ -268,13 +268,10 @@ static void scene_call(BhrContext *context) {
         film.auto_exposure = number();
         film.auto_percentile = number();
         film.auto_target = number();
-        film.auto_least_ev = number();
-        film.auto_most_ev = number();
+        film.auto_least_ev = number(), film.auto_most_ev = number();
         film.auto_adaptation = number();
-        film.highlights = number();
-        film.shadows = number();
-        film.grain = number();
-        film.grain_seed = number();
+        film.highlights = number(), film.shadows = number();
+        film.grain = number(), film.grain_seed = number();
         film.lut_strength = number();
         check(bhr_set_film(context, &film));
         for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {

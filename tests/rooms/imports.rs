@@ -21,7 +21,7 @@ const ROOMS: [&[&str]; 15] = [
     &["window"],
     &["cpu", "gpu"],
     &["interop", "tracers"],
-    &["job", "surface"],
+    &["accumulation", "job", "surface"],
     &["renderer"],
     &["capi"],
     &["lib"],

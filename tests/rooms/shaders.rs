@@ -6,12 +6,13 @@ use std::collections::BTreeSet;
 use std::fs;
 
 /// The folders of shaders/, in the same way. The fragment `constants`, which is printed from Rust, lies below them all.
-const SHADER_ROOMS: [&[&str]; 8] = [
+const SHADER_ROOMS: [&[&str]; 9] = [
     &["shared"],
     &["geodesic"],
     &["camera"],
     &["records"],
     &["bloom", "emit", "film", "sky", "window"],
+    &["metering"],
     &["lens", "traced"],
     &["shade"],
     &["refine"],

@@ -83,7 +83,7 @@ fn exposure_adapts_from_frame_to_frame() {
     }
 }
 
-/// The same picture whether light is kept or made twice, and by several samples.
+/// Pictures are alike whether light is kept or made twice, and by several samples.
 #[test]
 fn light_that_is_not_kept_is_metered_alike() {
     for (tracer, mut renderer) in both() {

@@ -219,7 +219,8 @@ viewer_saves_pictures() {
 viewer_breaks_pictures_off() {
     viewer_open --size 320x180 --scene "$root/examples-c/scenes/soft-disk.toml" || return 1
     xdotool key F12 key F12 && viewer_until 120 viewer_says '^picture broken off: viewer-0001.png' &&
-        [ ! -e "$viewer_folder/viewer-0001.png" ] && xdotool key m && viewer_until 60 viewer_says '^mass' && viewer_close
+        [ ! -e "$viewer_folder/viewer-0001.png" ] && xdotool key m && viewer_until 60 viewer_says '^mass' &&
+        viewer_close
 }
 
 # R: a folder of numbered pictures that differ, as many as it says, even when the window changes its size on the way.

@@ -36,7 +36,7 @@ from ._constants import (
     ViewName,
 )
 from ._ffi import ffi
-from ._frame import Frame, _path
+from ._frame import Frame, _path, output_of, target_of
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
@@ -461,7 +461,7 @@ class Context(SceneText, Tracing):
         """Renders the scene as it is now, into `out` if that is given; width and height may then be left out. Default
         format: RGBA8_SRGB, or that of `out`. `transparent` leaves the sky out, and alpha says where it was. `samples`:
         rays of a pixel, for this frame in the place of Quality.samples_per_pixel."""
-        frame, image = _target(width, height, format, transparent, out)
+        frame, image = target_of(width, height, format, transparent, out)
         with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_render_image(context, image))
         return frame
@@ -484,10 +484,9 @@ class Context(SceneText, Tracing):
                     ctx.time = begin + i / 16 * span
                     yield 1.0
 
-            frame = ctx.accumulate(shutter(), 1920, 1080)
-
-        The rest is as for `render`."""
-        frame, image = _target(width, height, format, transparent, out)
+            frame = ctx.accumulate(shutter(), 1920, 1080)  # the rest is as for `render`
+        """
+        frame, image = target_of(width, height, format, transparent, out)
         with self._gate as context:
             check(lib.bhr_begin_accumulation(context, image.width, image.height, image.flags))
         try:
@@ -515,7 +514,7 @@ class Context(SceneText, Tracing):
     ) -> Job:
         """Begins the same in the background and returns at once: a future of the frame. The scene is taken as it is
         now. At most 64 jobs of a context may be unfinished. `progress` is called on a thread of the package."""
-        frame, image = _target(width, height, format, transparent, out)
+        frame, image = target_of(width, height, format, transparent, out)
         pointer = ffi.new("BhrJob **")
         with self._sampled(samples), self._gate as context:
             check(lib.bhr_render_image_async(context, image, pointer))
@@ -590,37 +589,6 @@ class Context(SceneText, Tracing):
         image.flags = lib.BHR_IMAGE_TRANSPARENT if transparent else 0
         with self._sampled(samples), self._gate as context, Call(progress) as call:
             call.check(lib.bhr_prepare(context, image))
-
-
-def output_of(output: Any) -> tuple[OutputKind, int]:
-    """The kind of an output, and the number of its crossing or its view."""
-    named, index = output if isinstance(output, tuple) else (output, 0)
-    kind = member(OutputKind, named, "output")
-    return kind, member(View, index, "view") if kind == OutputKind.VIEW else operator.index(index)
-
-
-def _target(
-    width: int | None,
-    height: int | None,
-    format: FormatLike | None,
-    transparent: bool,
-    out: Frame | npt.NDArray[Any] | None,
-) -> tuple[Frame, Any]:
-    """The frame to render into, and the struct that describes it."""
-    format = None if format is None else member(Format, format, "format")
-    if out is None:
-        if width is None or height is None:
-            raise TypeError("a frame needs width and height, or an array in `out`")
-        frame = Frame.empty(operator.index(width), operator.index(height), format or Format.RGBA8_SRGB)
-    else:
-        frame = out if isinstance(out, Frame) else Frame(out, format)
-        if format is not None and format != frame.format:
-            raise ValueError(f"out has the format {frame.format.name}, not {format.name}")
-        if width not in (None, frame.width) or height not in (None, frame.height):
-            raise ValueError(f"out has {frame.width} x {frame.height} pixels, not {width} x {height}")
-    image = frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)
-    frame.transparent = transparent
-    return frame, image
 
 
 @atexit.register

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import tempfile
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Format, FormatLike
+from ._constants import Format, FormatLike, OutputKind, View
 from ._ffi import ffi
 from ._library import check, lib
 from ._names import member
@@ -155,3 +156,34 @@ def _path(path: str | os.PathLike[str]) -> bytes:
     if b"\0" in name:
         raise ValueError("the path contains a null character")
     return name
+
+
+def output_of(output: Any) -> tuple[OutputKind, int]:
+    """The kind of an output, and the number of its crossing or its view."""
+    named, index = output if isinstance(output, tuple) else (output, 0)
+    kind = member(OutputKind, named, "output")
+    return kind, member(View, index, "view") if kind == OutputKind.VIEW else operator.index(index)
+
+
+def target_of(
+    width: int | None,
+    height: int | None,
+    format: FormatLike | None,
+    transparent: bool,
+    out: Frame | npt.NDArray[Any] | None,
+) -> tuple[Frame, Any]:
+    """The frame to render into, and the struct that describes it."""
+    format = None if format is None else member(Format, format, "format")
+    if out is None:
+        if width is None or height is None:
+            raise TypeError("a frame needs width and height, or an array in `out`")
+        frame = Frame.empty(operator.index(width), operator.index(height), format or Format.RGBA8_SRGB)
+    else:
+        frame = out if isinstance(out, Frame) else Frame(out, format)
+        if format is not None and format != frame.format:
+            raise ValueError(f"out has the format {frame.format.name}, not {format.name}")
+        if width not in (None, frame.width) or height not in (None, frame.height):
+            raise ValueError(f"out has {frame.width} x {frame.height} pixels, not {width} x {height}")
+    image = frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)
+    frame.transparent = transparent
+    return frame, image

@@ -29,9 +29,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ._constants import Format, FormatLike, OutputKind, OutputKindLike, Projection, ProjectionLike, Status, ViewName
-from ._context import Context, output_of
+from ._context import Context
 from ._ffi import ffi
-from ._frame import Frame
+from ._frame import Frame, output_of
 from ._gate import Door
 from ._job import AnyJob
 from ._library import begin, check, lib

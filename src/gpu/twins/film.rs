@@ -38,8 +38,9 @@ fn enter_film() {
         in3(44u), word(47u), in3(48u), in1(51u));
 }
 fn enter_meter() {
-    meter = MeterParams(vec2<u32>(1u), vec2<u32>(1u), 1u, 1.0, 0.0, in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u),
-        in1(6u), in1(7u), 1.0);
+    let one = vec2<u32>(1u);
+    meter = MeterParams(one, one, 1u, 1.0, 0.0, in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u), in1(6u), in1(7u),
+        1.0);
 }
 fn out_bytes(words: vec4<u32>, count: u32) {
     for (var k = 0u; k < count; k += 1u) {

@@ -89,7 +89,7 @@ impl MeterBuffers {
         self.resources = None;
     }
 
-    /// What comes in group 1 of development before the sampler that ends it.
+    /// The part of group 1 of development before the sampler that ends it.
     pub fn group(&self) -> Result<[wgpu::BindingResource<'_>; 3]> {
         let resources = self.resources()?;
         let smoothed = wgpu::BindingResource::TextureView(&resources.smoothed.view);
