@@ -25,6 +25,7 @@ pub fn check(given: &ArgMatches) -> Result<(), Ending> {
         let about = |error: bhr::error::Error| Ending::data(format!("frame {frame}, {seconds} s: {error}"));
         let scene = opened.file.at(seconds, &Scene::default()).map_err(about)?.scene;
         scene.observer().map_err(about)?;
+        open::check_frames(&scene)?;
     }
     say(&format!(
         "{} frames of {} x {}, {} a second: all of them can be rendered",

@@ -43,6 +43,19 @@ impl Opened {
     }
 }
 
+/// Whether frames of a scene can be rendered in any order. Errors: they depend on each other.
+pub fn check_frames(scene: &bhr::scene::Scene) -> Result<(), Ending> {
+    let auto = &scene.film.auto_exposure;
+    if auto.strength > 0.0 && auto.adaptation < 1.0 {
+        return Err(Ending::data(format!(
+            "film auto_adaptation is {}: frames of `bhr render` are made in any order and know no other; leave it at \
+             1, or turn auto_exposure off and key exposure_ev",
+            auto.adaptation
+        )));
+    }
+    Ok(())
+}
+
 /// The adapters that `--adapter` names; `None`: the first that fits.
 fn adapter_indices(given: &ArgMatches, backend: Option<Backend>) -> Result<Vec<Option<u32>>, Ending> {
     let Some(text) = given.get_one::<String>("adapter") else { return Ok(vec![None]) };

@@ -231,6 +231,7 @@ impl Order {
     /// [`Self::show`] of a moment between frames.
     fn show_at(&self, frame: f64, renderer: &mut Renderer) -> Result<(Option<Region>, [u32; 2]), Ending> {
         let region = self.opened.show(frame / self.rate, renderer)?;
+        open::check_frames(&renderer.scene)?;
         if let Some(samples) = self.samples {
             renderer.scene.quality.samples_per_pixel = samples;
             renderer.scene.quality.check()?;
@@ -327,7 +328,6 @@ impl Order {
         let asked = |ending| signals.check().err().unwrap_or(ending);
         if let Some(shutter) = self.shutter {
             self.render_blurred((frame, shutter), (pixels, &places), renderer, lost, signals)?;
-            self.show(frame, renderer)?;
         } else if places.len() > 1 {
             let rendered = recovering(renderer, lost, |renderer| {
                 let mut rest = &mut *pixels;
@@ -381,9 +381,16 @@ impl Order {
             let added = recovering(renderer, lost, |renderer| renderer.accumulate(1.0, &mut |_| !signals.has_come()));
             added.map_err(asked)?;
         }
+        // The film is that of the frame's moment.
+        self.show(frame, renderer)?;
         let layout = places.first().map_or_else(|| self.layout(), |place| place.layout);
         let mut image = ImageMut::new(layout, bytemuck::cast_slice_mut(pixels))?;
         Ok(renderer.end_accumulation(&mut image, self.transparent)?)
+    }
+
+    /// The pictures that are rendered of a frame.
+    pub fn moments(&self) -> u32 {
+        self.shutter.map_or(1, |shutter| shutter.samples)
     }
 
     /// Each eye's picture in the frame, and the byte at which it begins; one without an eye is all of it.

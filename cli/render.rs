@@ -105,7 +105,8 @@ fn dry_run(
         seconds.push(took);
     }
     let mean = seconds.iter().sum::<f64>() / seconds.len().max(1) as f64;
-    let scale = f64::from(layout.width) * f64::from(layout.height) / (f64::from(small.width) * f64::from(small.height));
+    let shrunk = f64::from(small.width) * f64::from(small.height);
+    let scale = f64::from(layout.width) * f64::from(layout.height) / shrunk * f64::from(order.moments());
     let (_, whole) = order.places()?;
     let adapter = renderer.adapter();
     say(&format!(

@@ -254,7 +254,7 @@ const Field FILM_FIELDS[] = {
      "lose; their structure stays", NULL},
     {"--shadows", OPTION_DOUBLE, offsetof(BhrFilm, shadows), "EV", 0, 1, "0 .. 1",
      "local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose; "
-     "black stays black", NULL},
+     "black stays black, but glare over it is lifted like other light: use less bloom with it", NULL},
     {"--grain", OPTION_DOUBLE, offsetof(BhrFilm, grain), "pixel", 0, 1, "0 .. 1",
      "grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself", NULL},
     {"--grain-seed", OPTION_DOUBLE, offsetof(BhrFilm, grain_seed), NULL, -1e15, 1e15, "-1e15 .. 1e15",

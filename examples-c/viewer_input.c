@@ -280,6 +280,7 @@ static void save_picture(Viewer *v, double unused) {
     } else if (v->size[0] != 0 && v->size[1] != 0) {
         Scene scene = v->scene;
         governor_choose_for_picture(&v->governor, &scene.quality);
+        scene.film.auto_adaptation = 1.0; /* the picture's context has shown nothing before */
         picture_begin_numbered(&v->picture, v->context, &scene, v->size[0], v->size[1]);
     }
 }

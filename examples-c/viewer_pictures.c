@@ -60,6 +60,15 @@ static BhrStatus open_beside(const BhrContext *context, BhrContext **beside) {
         return status;
     }
     options.backend = adapter.backend;
+    for (uint32_t i = 0; i < bhr_adapter_count(); i++) {
+        BhrAdapterInfo listed;
+        BHR_INIT(listed);
+        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&
+            strcmp(listed.name, adapter.name) == 0) {
+            options.adapter_index = (int32_t)i;
+            break;
+        }
+    }
     return bhr_context_create(BHR_ABI_VERSION, &options, beside);
 }
 

@@ -1019,8 +1019,10 @@ typedef struct BhrFilm {
      * frame: at 1, light is a quarter there. Default 0. @since 0.2.0 */
     double vignette;
     /** Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
-     * frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
-     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
+     * frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
+     * 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
+     * bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
+     * rendered. @since 0.2.0 */
     double auto_exposure;
     /** The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0 */
     double auto_percentile;
@@ -1036,13 +1038,16 @@ typedef struct BhrFilm {
      * time constant T it is 1 - exp(-t / T). @since 0.2.0 */
     double auto_adaptation;
     /** Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
-     * their structure stays. Default 0: off. Regions as for auto_exposure. @since 0.2.0 */
+     * their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
+     * rendered. @since 0.2.0 */
     double highlights;
     /** Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-     * black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0 */
+     * black stays black, but glare over it is lifted like other light: use less bloom with it. Default 0: off. With a
+     * region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
     double shadows;
     /** Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
-     * 0: off. Its mean stays, and it looks the same at every resolution. @since 0.2.0 */
+     * 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
+     * @since 0.2.0 */
     double grain;
     /** Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0 */
     double grain_seed;
@@ -1356,8 +1361,8 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
  * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times as
- * wide as high, or for bloom, a beam or a measured film with a region set; UNSUPPORTED inside a spinning hole's horizon
- * in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the progress callback. */
+ * wide as high, or for bloom, a beam, auto_exposure, highlights or shadows with a region set; UNSUPPORTED inside a
+ * spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /** Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -1373,14 +1378,14 @@ BHR_NODISCARD BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target)
 
 /** Begins to add the light of frames up: for motion blur (the host moves time, camera and bodies between them), depth
  * of field (the camera moves across a lens), or finer pixels. width and height in pixels, flags 0 or
- * BHR_IMAGE_TRANSPARENT, as the image will have them. Frames that were added before are forgotten. Takes 32 bytes a
- * pixel until bhr_end_accumulation; other calls render meanwhile as ever.
+ * BHR_IMAGE_TRANSPARENT, as the image will have it. Frames that were added before are forgotten. Takes 32 bytes a
+ * pixel until bhr_end_accumulation, which takes some more; other calls render meanwhile as ever.
  * Errors: INVALID_ARGUMENT for a size that no image has, or an unknown flag; OUT_OF_MEMORY. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_begin_accumulation(BhrContext *context, uint32_t width, uint32_t height, uint32_t flags);
 
-/** Renders a whole frame of the scene as it is now, and adds its light times weight, 0.000001 .. 1000000: 1 for a
- * shutter that is open or shut. The view must be LIGHT; the film does not matter yet. Up to 65536 frames. After an
- * error nothing is added.
+/** Renders a whole frame of the scene as it is now, and adds its light times weight, 0.000001 .. 1000000: always 1 for
+ * a shutter that opens and shuts at once. The view must be LIGHT; the film does not matter yet. Up to 65536 frames.
+ * After an error nothing is added.
  * Errors: INVALID_STATE without bhr_begin_accumulation, with a region set, or after too many frames; INVALID_ARGUMENT
  * for a weight out of range; those of bhr_render_image. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_accumulate(BhrContext *context, double weight);

@@ -34,11 +34,13 @@ pub struct Accumulation {
 }
 
 impl Accumulation {
-    /// Errors: INVALID_ARGUMENT for a size beyond images', OUT_OF_MEMORY.
-    pub fn new(size @ [width, height]: [u32; 2], transparent: bool) -> Result<Self> {
+    /// `threads`: of development; 0: one for each core. Errors: INVALID_ARGUMENT for a size beyond images',
+    /// OUT_OF_MEMORY.
+    pub fn new(size @ [width, height]: [u32; 2], transparent: bool, threads: u32) -> Result<Self> {
         Layout::packed(PixelFormat::Rgba32F, width, height).check()?;
         let pixels = width as usize * height as usize;
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
+        let threads = if threads > 0 { threads as usize } else { cores() };
         allocate::check_room(threads * THREAD_ROOM + 2 * pixels * size_of::<[f32; 4]>(), LIGHT)?;
         let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("bhr-film-{i}"));
         let pool = builder.start_handler(|_| begin_own_thread()).build();

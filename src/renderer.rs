@@ -422,7 +422,7 @@ impl Renderer {
     /// Begins to add frames of `size` up, in place of those that were added before: the host changes the scene between
     /// them, for motion blur and depth of field. Errors: INVALID_ARGUMENT for a size beyond images', OUT_OF_MEMORY.
     pub fn begin_accumulation(&mut self, size: [u32; 2], transparent: bool) -> Result<()> {
-        self.accumulation = Some(Accumulation::new(size, transparent)?);
+        self.accumulation = Some(Accumulation::new(size, transparent, self.options.cpu_threads)?);
         Ok(())
     }
 
@@ -439,6 +439,10 @@ impl Renderer {
         let start = Instant::now();
         let begun = self.accumulation.as_ref().ok_or_else(not_accumulating)?;
         begun.check(weight)?;
+        if self.scene.view != View::Light {
+            let view = self.scene.view.name();
+            return Err(Error::argument(format!("view is {view}; light is what is accumulated: set view LIGHT")));
+        }
         let request = self.request(PixelFormat::Rgba32F, begun.size, begun.transparent, None)?;
         // The frames are put back whatever happens.
         let mut begun = self.accumulation.take().ok_or_else(not_accumulating)?;

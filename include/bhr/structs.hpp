@@ -262,7 +262,7 @@ struct Film {
     /// their structure stays.
     double highlights;
     /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-    /// black stays black.
+    /// black stays black, but glare over it is lifted like other light: use less bloom with it.
     double shadows;
     /// Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself.
     double grain;

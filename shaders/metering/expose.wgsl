@@ -32,10 +32,14 @@ fn expose(@builtin(local_invocation_index) bin: u32) {
     let total = sums[METER_BINS - 1u];
     let wanted = max(meter.percentile * f32(total), 0.5);
     let before = f32(sums[bin] - count);
-    // In a black frame nothing is changed.
+    // A black frame has no exposure of its own; where frames adapt it keeps that of the one before.
+    let at_once = meter.adaptation >= 1.0;
+    if total == 0u && bin == 0u && at_once {
+        exposure.stops = 0.0;
+    }
     if count > 0u && before < wanted && wanted <= f32(sums[bin]) {
         let stops = wanted_stops((f32(bin) + (wanted - before) / f32(count)) / METER_BINS_PER_STOP);
-        let last = select(stops, exposure.stops, exposure.measured != 0u);
+        let last = select(stops, exposure.stops, exposure.measured != 0u && !at_once);
         exposure.stops = last + meter.adaptation * (stops - last);
         exposure.measured = 1u;
     }

@@ -9,12 +9,14 @@
 @group(0) @binding(0) var<uniform> meter: MeterParams;
 @group(0) @binding(1) var gathered: texture_2d<f32>;
 @group(0) @binding(2) var glare: texture_2d<f32>;
-@group(0) @binding(3) var<storage, read_write> counts: array<u32>;
+// For each stop of each block the cells, and the sum of how far theirs are above it, both in parts of a cell.
+@group(0) @binding(3) var<storage, read_write> counts: array<vec2<i32>>;
 @group(0) @binding(4) var<storage, read_write> histogram: array<atomic<u32>>;
 
 const THREADS: u32 = 128u;
 
-var<workgroup> block_counts: array<atomic<u32>, BLOCK_STOPS>;
+var<workgroup> block_counts: array<atomic<i32>, BLOCK_STOPS>;
+var<workgroup> block_moments: array<atomic<i32>, BLOCK_STOPS>;
 var<workgroup> block_histogram: array<atomic<u32>, METER_BINS>;
 
 fn count_cell(stop: f32) {
@@ -22,9 +24,14 @@ fn count_cell(stop: f32) {
         atomicAdd(&block_histogram[min(u32(stop * METER_BINS_PER_STOP), METER_BINS - 1u)], 1u);
         let place = min(stop, f32(BLOCK_STOPS - 1u));
         let first = u32(place);
-        let second = u32((place - f32(first)) * CELL_PARTS + 0.5);
-        atomicAdd(&block_counts[first], u32(CELL_PARTS) - second);
-        atomicAdd(&block_counts[min(first + 1u, BLOCK_STOPS - 1u)], second);
+        let share = place - f32(first);
+        let second = i32(share * CELL_PARTS + 0.5);
+        let moment = i32(share * (1.0 - share) * CELL_PARTS + 0.5);
+        let beyond = min(first + 1u, BLOCK_STOPS - 1u);
+        atomicAdd(&block_counts[first], i32(CELL_PARTS) - second);
+        atomicAdd(&block_moments[first], moment);
+        atomicAdd(&block_counts[beyond], second);
+        atomicAdd(&block_moments[beyond], -moment);
     }
 }
 
@@ -34,7 +41,8 @@ fn measure(@builtin(workgroup_id) block: vec3<u32>, @builtin(local_invocation_in
         atomicStore(&block_histogram[bin], 0u);
     }
     if thread < BLOCK_STOPS {
-        atomicStore(&block_counts[thread], 0u);
+        atomicStore(&block_counts[thread], 0);
+        atomicStore(&block_moments[thread], 0);
     }
     workgroupBarrier();
     let corner = block.xy * meter.side;
@@ -53,6 +61,7 @@ fn measure(@builtin(workgroup_id) block: vec3<u32>, @builtin(local_invocation_in
         }
     }
     if thread < BLOCK_STOPS {
-        counts[(block.y * meter.blocks.x + block.x) * BLOCK_STOPS + thread] = atomicLoad(&block_counts[thread]);
+        let found = vec2<i32>(atomicLoad(&block_counts[thread]), atomicLoad(&block_moments[thread]));
+        counts[(block.y * meter.blocks.x + block.x) * BLOCK_STOPS + thread] = found;
     }
 }

@@ -6,40 +6,39 @@
 #import metering/params
 
 @group(0) @binding(0) var<uniform> meter: MeterParams;
-@group(0) @binding(1) var<storage, read> counts: array<u32>;
+@group(0) @binding(1) var<storage, read> counts: array<vec2<i32>>;
 @group(0) @binding(2) var smoothed: texture_storage_3d<rgba16float, write>;
 
-var<workgroup> sums: array<f32, BLOCK_STOPS>;
+var<workgroup> sums: array<vec2<f32>, BLOCK_STOPS>;
+
+// The weight of what was counted at a stop, and its weight times stop.
+fn weighted(sum: vec2<f32>, stop: f32) -> vec2<f32> {
+    return vec2<f32>(sum.x, sum.x * (stop - BLOCK_MIDDLE) + sum.y);
+}
 
 @compute @workgroup_size(BLOCK_STOPS)
 fn smooth_blocks(@builtin(workgroup_id) block: vec3<u32>, @builtin(local_invocation_index) stop: u32) {
     // A table that is indexed has to be a variable.
     var shares = BLOCK_SHARES;
-    var sum = 0.0;
+    var sum = vec2<f32>(0.0);
     for (var dy = -2; dy <= 2; dy += 1) {
         for (var dx = -2; dx <= 2; dx += 1) {
             let place = vec2<i32>(block.xy) + vec2<i32>(dx, dy);
             if all(place >= vec2<i32>(0)) && all(place < vec2<i32>(meter.blocks)) {
                 let count = counts[(u32(place.y) * meter.blocks.x + u32(place.x)) * BLOCK_STOPS + stop];
-                sum += shares[abs(dy)] * shares[abs(dx)] * f32(count);
+                sum += shares[abs(dy)] * shares[abs(dx)] * vec2<f32>(count);
             }
         }
     }
     sums[stop] = sum;
     workgroupBarrier();
     let scale = BLOCK_WEIGHT / (CELL_PARTS * f32(meter.side * meter.side));
-    let middle = scale * STOP_SHARES.x * sum;
-    var weight = middle;
-    var stops = middle * (f32(stop) - BLOCK_MIDDLE);
+    var found = STOP_SHARES.x * weighted(sum, f32(stop));
     if stop > 0u {
-        let beside = scale * STOP_SHARES.y * sums[stop - 1u];
-        weight += beside;
-        stops += beside * (f32(stop) - 1.0 - BLOCK_MIDDLE);
+        found += STOP_SHARES.y * weighted(sums[stop - 1u], f32(stop) - 1.0);
     }
     if stop + 1u < BLOCK_STOPS {
-        let beside = scale * STOP_SHARES.y * sums[stop + 1u];
-        weight += beside;
-        stops += beside * (f32(stop) + 1.0 - BLOCK_MIDDLE);
+        found += STOP_SHARES.y * weighted(sums[stop + 1u], f32(stop) + 1.0);
     }
-    textureStore(smoothed, vec3<u32>(block.xy, stop), vec4<f32>(weight, stops, 0.0, 0.0));
+    textureStore(smoothed, vec3<u32>(block.xy, stop), vec4<f32>(scale * found, 0.0, 0.0));
 }

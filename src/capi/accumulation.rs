@@ -10,8 +10,8 @@ use crate::error::Error;
 
 /// Begins to add the light of frames up: for motion blur (the host moves time, camera and bodies between them), depth
 /// of field (the camera moves across a lens), or finer pixels. width and height in pixels, flags 0 or
-/// BHR_IMAGE_TRANSPARENT, as the image will have them. Frames that were added before are forgotten. Takes 32 bytes a
-/// pixel until bhr_end_accumulation; other calls render meanwhile as ever.
+/// BHR_IMAGE_TRANSPARENT, as the image will have it. Frames that were added before are forgotten. Takes 32 bytes a
+/// pixel until bhr_end_accumulation, which takes some more; other calls render meanwhile as ever.
 /// Errors: INVALID_ARGUMENT for a size that no image has, or an unknown flag; OUT_OF_MEMORY. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_begin_accumulation(
@@ -31,9 +31,9 @@ pub unsafe extern "C" fn bhr_begin_accumulation(
     }
 }
 
-/// Renders a whole frame of the scene as it is now, and adds its light times weight, 0.000001 .. 1000000: 1 for a
-/// shutter that is open or shut. The view must be LIGHT; the film does not matter yet. Up to 65536 frames. After an
-/// error nothing is added.
+/// Renders a whole frame of the scene as it is now, and adds its light times weight, 0.000001 .. 1000000: always 1 for
+/// a shutter that opens and shuts at once. The view must be LIGHT; the film does not matter yet. Up to 65536 frames.
+/// After an error nothing is added.
 /// Errors: INVALID_STATE without bhr_begin_accumulation, with a region set, or after too many frames; INVALID_ARGUMENT
 /// for a weight out of range; those of bhr_render_image. @since 0.2.0
 #[unsafe(no_mangle)]

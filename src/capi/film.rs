@@ -88,8 +88,10 @@ pub struct BhrFilm {
     /// frame: at 1, light is a quarter there. Default 0. @since 0.2.0
     pub vignette: f64,
     /// Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
-    /// frame's luminance is measured after bloom; pixels darker than 2^-16 do not count. bhr_frame_stats has what was
-    /// added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
+    /// frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
+    /// 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
+    /// bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
+    /// rendered. @since 0.2.0
     pub auto_exposure: f64,
     /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0
     pub auto_percentile: f64,
@@ -106,13 +108,16 @@ pub struct BhrFilm {
     /// time constant T it is 1 - exp(-t / T). @since 0.2.0
     pub auto_adaptation: f64,
     /// Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
-    /// their structure stays. Default 0: off. Regions as for auto_exposure. @since 0.2.0
+    /// their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
+    /// rendered. @since 0.2.0
     pub highlights: f64,
     /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-    /// black stays black. Default 0: off. Regions as for auto_exposure. @since 0.2.0
+    /// black stays black, but glare over it is lifted like other light: use less bloom with it. Default 0: off. With a
+    /// region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
     pub shadows: f64,
     /// Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
-    /// 0: off. Its mean stays, and it looks the same at every resolution. @since 0.2.0
+    /// 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
+    /// @since 0.2.0
     pub grain: f64,
     /// Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0
     pub grain_seed: f64,

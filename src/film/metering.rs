@@ -9,8 +9,8 @@
 //! goes by a histogram with 8 bins a stop. Local tone mapping splits log luminance into a base, smooth but for edges,
 //! and what is left, as F. Durand and J. Dorsey do (SIGGRAPH 2002), and changes the base alone. The base is a bilateral
 //! filter's, on a grid of blocks and stops (the bilateral grid: J. Chen, S. Paris, F. Durand, SIGGRAPH 2007): cells
-//! are counted by block and stop, the counts are smoothed across five blocks and three stops, and read between the
-//! nearest eight. So light of very different luminance, as on both sides of the shadow's edge, does not mix, and no
+//! are counted by block and stop, and their own stops summed; both are smoothed across five blocks and three stops, and
+//! read between the nearest eight. Where all light near a pixel is of one stop, the base is that, exactly. So light of very different luminance, as on both sides of the shadow's edge, does not mix, and no
 //! halo appears there.
 
 use super::bloom::Bloom;
@@ -112,9 +112,12 @@ impl MeterParams {
     /// The stops to add, where the percentile is `stop` (`None`: the frame is black) and `before` were added to the
     /// last frame (`None`: there was none).
     fn exposure_stops(&self, stop: Option<f32>, before: Option<f32>) -> f32 {
+        // At once: a picture depends on its scene alone.
+        let before = before.filter(|_| self.adaptation < 1.0);
         let Some(stop) = stop else { return before.unwrap_or(0.0) };
         let wanted = wanted_stops(self, stop);
-        before.map_or(wanted, |before| before + self.adaptation * (wanted - before))
+        // No -0.
+        before.map_or(wanted, |before| before + self.adaptation * (wanted - before)) + 0.0
     }
 }
 
@@ -153,8 +156,9 @@ fn percentile_stop(counts: &[u32], percentile: f32) -> Option<f32> {
     None
 }
 
-/// The counts of a block by stop, or what they are once smoothed: weight, and weight times stop.
-type Counts = [u32; BLOCK_STOPS];
+/// The cells of a block by stop, in parts of a cell: how many, and the sum of how far theirs are above that stop; and
+/// what becomes of them once they are smoothed: weight, and weight times stop.
+type Counts = [[i32; 2]; BLOCK_STOPS];
 type Smoothed = [[f32; 2]; BLOCK_STOPS];
 
 /// A frame that has been measured.
@@ -171,7 +175,8 @@ impl Metered {
     /// the last frame got. On the current pool. Errors: OUT_OF_MEMORY.
     pub fn new(params: MeterParams, before: Option<f32>, light: impl Fn(usize) -> [f32; 3] + Sync) -> Result<Self> {
         let [columns, rows] = params.blocks.map(|side| side as usize);
-        let (counts, histogram) = (filled(columns * rows, [0; BLOCK_STOPS], BLOCKS)?, filled(METER_BINS, 0, BLOCKS)?);
+        let (counts, histogram) =
+            (filled(columns * rows, [[0; 2]; BLOCK_STOPS], BLOCKS)?, filled(METER_BINS, 0, BLOCKS)?);
         let mut measured = Measured { counts, histogram };
         let side = params.side as usize;
         let parts = measured.counts.par_iter_mut().enumerate().map(|(number, counts)| {
@@ -246,9 +251,15 @@ fn count(counts: &mut Counts, histogram: &mut [u32; METER_BINS], stop: f32) {
     histogram[((stop * METER_BINS_PER_STOP) as usize).min(METER_BINS - 1)] += 1;
     let place = stop.min(BLOCK_STOPS as f32 - 1.0);
     let first = place as usize;
-    let second = ((place - first as f32) * CELL_PARTS + 0.5) as u32;
-    counts[first] += CELL_PARTS as u32 - second;
-    counts[(first + 1).min(BLOCK_STOPS - 1)] += second;
+    let share = place - first as f32;
+    let second = (share * CELL_PARTS + 0.5) as i32;
+    // Share 1 - s lies s above the first stop, share s lies 1 - s below the second.
+    let moment = (share * (1.0 - share) * CELL_PARTS + 0.5) as i32;
+    let beyond = (first + 1).min(BLOCK_STOPS - 1);
+    counts[first][0] += CELL_PARTS as i32 - second;
+    counts[first][1] += moment;
+    counts[beyond][0] += second;
+    counts[beyond][1] -= moment;
 }
 
 struct Measured {
@@ -264,22 +275,25 @@ impl Measured {
         let mut blocks = collected(self.counts.iter().map(|_| [[0.0; 2]; BLOCK_STOPS]), BLOCKS)?;
         blocks.par_iter_mut().enumerate().for_each(|(number, out)| {
             let (x, y) = (number as i32 % columns, number as i32 / columns);
-            let mut sums = [0.0; BLOCK_STOPS];
+            let mut sums = [[0.0; 2]; BLOCK_STOPS];
             for (row, dy) in (y - 2..=y + 2).zip(-2_i32..) {
                 for (column, dx) in (x - 2..=x + 2).zip(-2_i32..) {
                     let share = BLOCK_SHARES[dy.unsigned_abs() as usize] * BLOCK_SHARES[dx.unsigned_abs() as usize];
                     let inside = (0..rows).contains(&row) && (0..columns).contains(&column);
                     if let Some(counts) = self.counts.get((row * columns + column) as usize).filter(|_| inside) {
-                        sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += share * *count as f32);
+                        for (sum, count) in sums.iter_mut().zip(counts) {
+                            (0..2).for_each(|i| sum[i] += share * count[i] as f32);
+                        }
                     }
                 }
             }
             for (k, out) in out.iter_mut().enumerate() {
                 for (step, share) in [(-1, STOP_SHARES[1]), (0, STOP_SHARES[0]), (1, STOP_SHARES[1])] {
                     let stop = k as i32 + step;
-                    let weight = usize::try_from(stop).ok().and_then(|stop| sums.get(stop)).copied().unwrap_or(0.0);
+                    let beside = usize::try_from(stop).ok().and_then(|stop| sums.get(stop));
+                    let [weight, above] = beside.copied().unwrap_or_default();
                     out[0] += scale * share * weight;
-                    out[1] += scale * share * weight * (stop as f32 - BLOCK_MIDDLE);
+                    out[1] += scale * share * (weight * (stop as f32 - BLOCK_MIDDLE) + above);
                 }
             }
         });
@@ -343,7 +357,9 @@ mod tests {
         assert_eq!(Metered::new(params, None, lit).expect("memory").stops, -1.5);
         assert_eq!(Metered::new(params, None, |_| [1e-3; 3]).expect("memory").stops, -0.5);
         assert_eq!(Metered::new(params, None, |_| [0.0; 3]).expect("memory").stops, 0.0);
-        assert_eq!(Metered::new(params, Some(-1.0), |_| [0.0; 3]).expect("memory").stops, -1.0);
+        assert_eq!(Metered::new(params, Some(-1.0), |_| [0.0; 3]).expect("memory").stops, 0.0);
+        let slow = MeterParams { adaptation: 0.5, ..params };
+        assert_eq!(Metered::new(slow, Some(-1.0), |_| [0.0; 3]).expect("memory").stops, -1.0);
         assert!(Metered::new(params, None, |_| [f32::NAN; 3]).expect("memory").stops.is_finite());
     }
 
@@ -392,6 +408,20 @@ mod tests {
         let before = (64.0_f32 / 0.002).log2();
         assert!((span - before / 2.0).abs() < 0.5, "{before} stops became {span}");
         assert_eq!(metered.over([0.0, 0.0, 0.0, 1.0], 700, 100), [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    /// In light that grows steadily by a stop in a third of the frame, what is shown grows steadily, too.
+    #[test]
+    fn smooth_light_gets_no_bands() {
+        let params = params(&film(AutoExposure::default(), 1.0, 1.0), [960, 540]);
+        let light = |x: u32| (9.0 * (x as f32 + 0.5) / 960.0 - 6.0).exp2();
+        let width = params.cells[0] as usize;
+        let metered = Metered::new(params, None, |i| [light(2 * (i % width) as u32 + 1); 3]).expect("memory");
+        let shown = |x: u32| metered.over([light(x), light(x), light(x), 1.0], x, 270)[0].log2();
+        let knee = |x: u32| (light(x).log2() - GREY_STOP).abs() < 1.5;
+        let all = (60..900).filter(|x| !knee(*x)).map(shown).collect::<Vec<_>>();
+        let (least, most) = all.iter().fold((f32::MAX, f32::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        assert!(most - least < 0.02, "a flat picture varies by {} stops", most - least);
     }
 
     #[test]

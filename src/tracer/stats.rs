@@ -39,7 +39,9 @@ impl FrameStats {
         self.readback_ns += part.readback_ns;
         self.device_bytes = self.device_bytes.max(part.device_bytes);
         self.lens_tables += part.lens_tables;
-        self.auto_ev += part.auto_ev;
+        if part.auto_ev != 0.0 {
+            self.auto_ev = part.auto_ev;
+        }
     }
 }
 

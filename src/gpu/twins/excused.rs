@@ -91,7 +91,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/upsample", "between upsample", BLOOM),
     ("metering/measure", "count_cell measure", METERED),
     ("metering/expose", "expose", METERED),
-    ("metering/smooth", "smooth_blocks", METERED),
+    ("metering/smooth", "weighted smooth_blocks", METERED),
     ("metering/metered", "base_at as_metered", METERED),
     ("metering/none", "as_metered", Plumbing("it leaves light as it is")),
     ("emit/disk", "disk_at_crossing disk_opacity", Plumbing("the twin of `pixel_light` calls it")),

@@ -55,7 +55,7 @@ impl MeterResources {
         Ok(Self {
             cells: meter.cells,
             params: CachedUniform::new(device, "metering", size_of::<MeterParams>() as u64)?,
-            counts: storage("counts of blocks", 4 * BLOCK_STOPS as u64 * blocks, Usage::empty())?,
+            counts: storage("counts of blocks", 8 * BLOCK_STOPS as u64 * blocks, Usage::empty())?,
             histogram: storage("histogram of light", 4 * METER_BINS as u64, Usage::empty())?,
             exposure: storage("exposure", size_of::<ExposureState>() as u64, Usage::COPY_SRC)?,
             smoothed: device.texture("smoothed blocks", format, dimension, meter.blocks, BLOCK_STOPS as u32)?,

@@ -65,7 +65,7 @@ impl Submission {
         }
         if recorded.metered {
             let stops = bytemuck::try_pod_read_unaligned::<f32>(part(&head, AUTO_STOPS, STOPS_BYTES)?);
-            stats.auto_ev += f64::from(stops.map_err(|e| Error::internal(format!("auto exposure: {e}")))?);
+            stats.auto_ev = f64::from(stops.map_err(|e| Error::internal(format!("auto exposure: {e}")))?);
         }
         let ticks = part(&head, TICKS, recorded.tick_bytes)?;
         stats.gpu_ns += timer::nanoseconds(device, ticks)?;
