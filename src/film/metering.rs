@@ -8,10 +8,10 @@
 //! Stops are log2 of the luminance (Y of Rec. 709), counted from 2^-16 on; darker cells are left out. Auto exposure
 //! goes by a histogram with 8 bins a stop. Local tone mapping splits log luminance into a base, smooth but for edges,
 //! and what is left, as F. Durand and J. Dorsey do (SIGGRAPH 2002), and changes the base alone. The base is a bilateral
-//! filter's, on a grid of blocks and stops (the bilateral grid: J. Chen, S. Paris, F. Durand, SIGGRAPH 2007): cells
-//! are counted by block and stop, and their own stops summed; both are smoothed across five blocks and three stops, and
-//! read between the nearest eight. Where all light near a pixel is of one stop, the base is that, exactly. So light of very different luminance, as on both sides of the shadow's edge, does not mix, and no
-//! halo appears there.
+//! filter's, on a grid of blocks and stops (the bilateral grid: J. Chen, S. Paris, F. Durand, SIGGRAPH 2007): cells are
+//! counted by block and stop, and their own stops summed; both are smoothed across five blocks and three stops, and
+//! read between the nearest eight. Where all light near a pixel is of one stop, the base is that, exactly. So light of
+//! very different luminance, as on both sides of the shadow's edge, does not mix, and no halo appears there.
 
 use super::bloom::Bloom;
 use super::colour_map::luminance;
