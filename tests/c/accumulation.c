@@ -32,7 +32,7 @@ static size_t differing(const unsigned char *a, const unsigned char *b, int most
     return count;
 }
 
-/* Exposures six stops apart come out alike, and the difference is told; so do limits. */
+/* Exposures two stops apart come out alike, and the difference is told; so do limits. */
 static void exposes(BhrContext *context) {
     BhrFilm        film;
     const BhrImage image = picture(before), other = picture(after);
@@ -41,16 +41,16 @@ static void exposes(BhrContext *context) {
     CHECK_OK(bhr_set_film(context, &film));
     CHECK_OK(bhr_render_image(context, &image));
     CHECK(auto_ev(context) == 0.0, "%g stops are added without auto exposure", auto_ev(context));
-    film.auto_exposure = 1.0;
+    film.auto_exposure = 1.0, film.auto_percentile = 98.0;
     film.auto_least_ev = -20.0, film.auto_most_ev = 20.0;
     CHECK_OK(bhr_set_film(context, &film));
     CHECK_OK(bhr_render_image(context, &image));
     const double bright = auto_ev(context);
-    film.exposure_ev = -6.0;
+    film.exposure_ev = -2.0;
     CHECK_OK(bhr_set_film(context, &film));
     CHECK_OK(bhr_render_image(context, &other));
     const double dark = auto_ev(context);
-    CHECK(fabs(dark - bright - 6.0) < 0.05, "%g and %g stops, six stops apart", bright, dark);
+    CHECK(fabs(dark - bright - 2.0) < 0.05, "%g and %g stops, two stops apart", bright, dark);
     CHECK(differing(before, after, 3) * 100 < BYTES, "%u bytes differ", (unsigned)differing(before, after, 3));
     film.auto_most_ev = 1.5, film.auto_least_ev = 1.5;
     CHECK_OK(bhr_set_film(context, &film));
@@ -95,7 +95,7 @@ static void adds_up(BhrContext *context) {
     CHECK_OK(bhr_set_film(context, &film));
     const BhrImage whole = picture(before);
     CHECK_OK(bhr_render_image(context, &whole));
-    const int64_t strides[] = {0, WIDTH * 8, -(int64_t)WIDTH * 4};
+    const int64_t strides[] = {0, WIDTH * 8, 0};
     for (size_t k = 0; k < COUNT_OF(strides); k++) {
         CHECK_OK(bhr_begin_accumulation(context, WIDTH, HEIGHT, 0));
         for (int i = 0; i < 3; i++) {
@@ -103,6 +103,7 @@ static void adds_up(BhrContext *context) {
         }
         BhrImage image = picture(after);
         image.row_stride = strides[k], image.byte_size = sizeof after;
+        image.flags = k == 2 ? BHR_IMAGE_BOTTOM_UP : 0;
         memset(after, 0, sizeof after);
         CHECK_OK(bhr_end_accumulation(context, &image));
         static unsigned char packed[BYTES];
@@ -111,7 +112,7 @@ static void adds_up(BhrContext *context) {
             memcpy(packed + y * WIDTH * 4, after + row * (k == 1 ? WIDTH * 8 : WIDTH * 4), WIDTH * 4);
         }
         const size_t off = differing(before, packed, 1);
-        CHECK(off * 500 < BYTES, "stride %d: %u bytes differ", (int)strides[k], (unsigned)off);
+        CHECK(off * 500 < BYTES, "layout %u: %u bytes differ", (unsigned)k, (unsigned)off);
     }
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "bhr_begin_accumulation", bhr_end_accumulation(context, &whole));
 }
