@@ -60,7 +60,11 @@ static BhrStatus open_beside(const BhrContext *context, BhrContext **beside) {
         return status;
     }
     options.backend = adapter.backend;
-    for (uint32_t i = 0; i < bhr_adapter_count(); i++) {
+    uint32_t count = 0;
+    if (bhr_adapter_count(&count) < 0) {
+        count = 0; /* the first one of this kind will do */
+    }
+    for (uint32_t i = 0; i < count; i++) {
         BhrAdapterInfo listed;
         BHR_INIT(listed);
         if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&

@@ -18,7 +18,7 @@ pub struct BhrFrameStats {
     pub struct_size: u32,
     /// Reserved: 0.
     pub reserved: u32,
-    /// Counts the finished frames of a context from 1: images, jobs and windows.
+    /// Counts the finished frames of a context from 1: images, jobs, windows, and each call that accumulates or ends.
     pub frame_index: u64,
     /// Pixels times samples.
     pub rays: u64,

@@ -211,7 +211,7 @@ static void frames(const std::string &folder) {
     EXPECT(context.end_accumulation(bhr::Image(mean, WIDTH, HEIGHT)));
     std::size_t off = 0;
     for (std::size_t i = 0; i < mean.size(); i++) {
-        off += std::abs(mean[i] - pixels[i]) > 1 ? 1 : 0;
+        off += std::size_t(std::abs(mean[i] - pixels[i]) > 1 ? 1 : 0);
     }
     EXPECT(off * 200 < mean.size());
     EXPECT(context.begin_accumulation(WIDTH, HEIGHT, bhr::ImageFlags::transparent) && context.end_accumulation());
