@@ -236,8 +236,8 @@ const Field FILM_FIELDS[] = {
     {"--vignette", OPTION_DOUBLE, offsetof(BhrFilm, vignette), NULL, 0, 1, "0 .. 1",
      "0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the "
      "whole frame: at 1, light is a quarter there", NULL},
-    {"--auto-exposure", OPTION_DOUBLE, offsetof(BhrFilm, auto_exposure), "EV", 0, 1, "0 .. 1",
-     "auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target", NULL},
+    {"--auto-exposure", OPTION_DOUBLE, offsetof(BhrFilm, auto_exposure), NULL, 0, 1, "0 .. 1",
+     "auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target", NULL},
     {"--auto-percentile", OPTION_DOUBLE, offsetof(BhrFilm, auto_percentile), NULL, 0, 100, "0 .. 100",
      "the percentile of the frame's luminance that auto exposure goes by, 0 .. 100", NULL},
     {"--auto-target", OPTION_DOUBLE, offsetof(BhrFilm, auto_target), NULL, 0.001, 1000, "0.001 .. 1000",
@@ -249,14 +249,15 @@ const Field FILM_FIELDS[] = {
     {"--auto-adaptation", OPTION_DOUBLE, offsetof(BhrFilm, auto_adaptation), NULL, 1e-6, 1, "1e-6 .. 1",
      "0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that "
      "this context measured", NULL},
-    {"--highlights", OPTION_DOUBLE, offsetof(BhrFilm, highlights), "EV", 0, 1, "0 .. 1",
-     "local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture "
-     "lose; their structure stays", NULL},
-    {"--shadows", OPTION_DOUBLE, offsetof(BhrFilm, shadows), "EV", 0, 1, "0 .. 1",
-     "local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose; "
-     "black stays black, but glare over it is lifted like other light: use less bloom with it", NULL},
-    {"--grain", OPTION_DOUBLE, offsetof(BhrFilm, grain), "pixel", 0, 1, "0 .. 1",
-     "grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself", NULL},
+    {"--highlights", OPTION_DOUBLE, offsetof(BhrFilm, highlights), NULL, 0, 1, "0 .. 1",
+     "local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture "
+     "come; their structure stays", NULL},
+    {"--shadows", OPTION_DOUBLE, offsetof(BhrFilm, shadows), NULL, 0, 1, "0 .. 1",
+     "local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come",
+     NULL},
+    {"--grain", OPTION_DOUBLE, offsetof(BhrFilm, grain), NULL, 0, 1, "0 .. 1",
+     "grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself",
+     NULL},
     {"--grain-seed", OPTION_DOUBLE, offsetof(BhrFilm, grain_seed), NULL, -1e15, 1e15, "-1e15 .. 1e15",
      "any number within +-1e15: each is another grain, for instance that of a film's frame", NULL},
     {"--lut-strength", OPTION_DOUBLE, offsetof(BhrFilm, lut_strength), NULL, 0, 1, "0 .. 1",

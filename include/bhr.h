@@ -1018,11 +1018,10 @@ typedef struct BhrFilm {
     /** 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
      * frame: at 1, light is a quarter there. Default 0. @since 0.2.0 */
     double vignette;
-    /** Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
-     * frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
-     * 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
-     * bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
-     * rendered. @since 0.2.0 */
+    /** Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
+     * frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
+     * exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
+     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
     double auto_exposure;
     /** The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0 */
     double auto_percentile;
@@ -1037,17 +1036,17 @@ typedef struct BhrFilm {
      * context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
      * time constant T it is 1 - exp(-t / T). @since 0.2.0 */
     double auto_adaptation;
-    /** Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    /** Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
      * their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
      * rendered. @since 0.2.0 */
     double highlights;
-    /** Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-     * black stays black, but glare over it is lifted like other light: use less bloom with it. Default 0: off. With a
+    /** Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
+     * Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
      * region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
     double shadows;
-    /** Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
-     * 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
-     * @since 0.2.0 */
+    /** Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
+     * Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
+     * pixel. @since 0.2.0 */
     double grain;
     /** Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0 */
     double grain_seed;
@@ -1352,8 +1351,8 @@ BHR_NODISCARD BhrStatus bhr_scene_save_file(const BhrContext *context, const cha
  * at 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread. */
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 
-/** Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are
- * begun from now on. fn NULL: none (default). */
+/** Sets the callback that bhr_render_image, bhr_accumulate and bhr_prepare report to, and, inside bhr_job_wait, the
+ * jobs that are begun from now on. fn NULL: none (default). */
 BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
 
 /** Renders the scene as it is now into the host's memory and returns when it is there. Until the first pixels are
@@ -1787,9 +1786,11 @@ BHR_NODISCARD BhrStatus bhr_world_line(const BhrContext *context, const BhrBody 
 
 /** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
 typedef struct BhrFrameStats {
-    uint32_t struct_size;  /**< sizeof(BhrFrameStats), set by the caller. */
-    uint32_t reserved;     /**< Reserved: 0. */
-    uint64_t frame_index;  /**< Counts the finished frames of a context from 1: images, jobs and windows. */
+    uint32_t struct_size; /**< sizeof(BhrFrameStats), set by the caller. */
+    uint32_t reserved;    /**< Reserved: 0. */
+    /** Counts the finished frames of a context from 1: images, jobs, windows, and each call that accumulates or ends.
+     */
+    uint64_t frame_index;
     uint64_t rays;         /**< Pixels times samples. */
     uint64_t steps;        /**< Integration steps of all rays; rays that were looked up take none. */
     uint64_t cpu_ns;       /**< From the call's beginning to its end; for a job, from its request until it was done. */

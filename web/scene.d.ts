@@ -570,12 +570,11 @@ export interface Film {
      */
     vignette: number;
     /**
-     * Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
-     * frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
-     * 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
-     * bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
-     * rendered.
-     * @range 0 .. 1 EV
+     * Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
+     * frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
+     * exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
+     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
+     * @range 0 .. 1
      * @default 0
      */
     auto_exposure: number;
@@ -613,25 +612,26 @@ export interface Film {
      */
     auto_adaptation: number;
     /**
-     * Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+     * Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
      * their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
      * rendered.
-     * @range 0 .. 1 EV
+     * @range 0 .. 1
      * @default 0
      */
     highlights: number;
     /**
-     * Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-     * black stays black, but glare over it is lifted like other light: use less bloom with it. Default 0: off. With a
+     * Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
+     * Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
      * region set, 8-bit images of light are INVALID_STATE when they are rendered.
-     * @range 0 .. 1 EV
+     * @range 0 .. 1
      * @default 0
      */
     shadows: number;
     /**
-     * Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
-     * 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
-     * @range 0 .. 1 pixel
+     * Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
+     * Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
+     * pixel.
+     * @range 0 .. 1
      * @default 0
      */
     grain: number;

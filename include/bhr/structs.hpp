@@ -245,7 +245,7 @@ struct Film {
     /// 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     /// frame: at 1, light is a quarter there.
     double vignette;
-    /// Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target.
+    /// Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target.
     double auto_exposure;
     /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100.
     double auto_percentile;
@@ -258,13 +258,12 @@ struct Film {
     /// 0.000001 .. 1: the share of the way that a frame goes from the exposure of the last frame of its size that this
     /// context measured.
     double auto_adaptation;
-    /// Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
     /// their structure stays.
     double highlights;
-    /// Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-    /// black stays black, but glare over it is lifted like other light: use less bloom with it.
+    /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
     double shadows;
-    /// Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself.
+    /// Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
     double grain;
     /// Any number within +-1e15: each is another grain, for instance that of a film's frame.
     double grain_seed;

@@ -88,10 +88,9 @@ pub struct BhrFilm {
     /// frame: at 1, light is a quarter there. Default 0. @since 0.2.0
     pub vignette: f64,
     /// Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
-    /// frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
-    /// 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
-    /// bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
-    /// rendered. @since 0.2.0
+    /// frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
+    /// exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
+    /// added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
     pub auto_exposure: f64,
     /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0
     pub auto_percentile: f64,
@@ -112,12 +111,12 @@ pub struct BhrFilm {
     /// rendered. @since 0.2.0
     pub highlights: f64,
     /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
-    /// Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a region set,
-    /// 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
+    /// Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
+    /// region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
     pub shadows: f64,
     /// Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
-    /// Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
-    /// @since 0.2.0
+    /// Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
+    /// pixel. @since 0.2.0
     pub grain: f64,
     /// Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0. @since 0.2.0
     pub grain_seed: f64,

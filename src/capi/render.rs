@@ -14,8 +14,8 @@ use std::ffi::c_void;
 /// at 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread.
 pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
-/// Sets the callback that bhr_render_image, bhr_accumulate and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are
-/// begun from now on. fn NULL: none (default).
+/// Sets the callback that bhr_render_image, bhr_accumulate and bhr_prepare report to, and, inside bhr_job_wait, the
+/// jobs that are begun from now on. fn NULL: none (default).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_progress(
     context: *mut BhrContext,

@@ -307,11 +307,10 @@ class Film(Struct):
     #: 0 .. 1, the share of a lens' natural darkening, cos^4 of an angle whose tangent is 1 in the corners of the whole
     #: frame: at 1, light is a quarter there. Default 0.
     vignette: float = 0.0
-    #: Auto exposure: the share, 0 .. 1, of the stops that bring auto_percentile to auto_target. Default 0: off. The
-    #: frame's luminance is measured after exposure_ev and bloom, in cells of 2 x 2 pixels or more; cells darker than
-    #: 2^-16 do not count. exposure_ev is taken back by it: auto_target is what makes the picture brighter.
-    #: bhr_frame_stats has what was added. With a region set, 8-bit images of light are INVALID_STATE when they are
-    #: rendered.
+    #: Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
+    #: frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
+    #: exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
+    #: added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
     auto_exposure: float = 0.0
     #: The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90.
     auto_percentile: float = 90.0
@@ -326,16 +325,17 @@ class Film(Struct):
     #: context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
     #: time constant T it is 1 - exp(-t / T).
     auto_adaptation: float = 1.0
-    #: Local tone mapping: the share, 0 .. 1, of their stops above middle grey that bright parts of the picture lose;
+    #: Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
     #: their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
     #: rendered.
     highlights: float = 0.0
-    #: Local tone mapping: the share, 0 .. 1, of their stops below middle grey that dark parts of the picture lose;
-    #: black stays black, but glare over it is lifted like other light: use less bloom with it. Default 0: off. With a
+    #: Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
+    #: Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
     #: region set, 8-bit images of light are INVALID_STATE when they are rendered.
     shadows: float = 0.0
-    #: Grain, 0 .. 1: the light of pixels varies at random, with a standard deviation of 0.25 grain of itself. Default
-    #: 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a pixel.
+    #: Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
+    #: Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
+    #: pixel.
     grain: float = 0.0
     #: Any number within +-1e15: each is another grain, for instance that of a film's frame. Default 0.
     grain_seed: float = 0.0
@@ -461,7 +461,7 @@ class FrameStats(Struct):
 
     c_name: ClassVar[str] = "BhrFrameStats"
 
-    #: Counts the finished frames of a context from 1: images, jobs and windows.
+    #: Counts the finished frames of a context from 1: images, jobs, windows, and each call that accumulates or ends.
     frame_index: int
     #: Pixels times samples.
     rays: int
