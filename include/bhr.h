@@ -977,8 +977,8 @@ typedef int32_t BhrColourMap;
 
 /** How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
  * radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
- * vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and
- * the LUT, or the colour map, dithering. */
+ * vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map,
+ * dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -1386,7 +1386,7 @@ BHR_NODISCARD BhrStatus bhr_begin_accumulation(BhrContext *context, uint32_t wid
  * a shutter that opens and shuts at once. The view must be LIGHT; the film does not matter yet. Up to 65536 frames.
  * After an error nothing is added.
  * Errors: INVALID_STATE without bhr_begin_accumulation, with a region set, or after too many frames; INVALID_ARGUMENT
- * for a weight out of range; those of bhr_render_image. @since 0.2.0 */
+ * for a weight out of range or another view; those of bhr_render_image. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_accumulate(BhrContext *context, double weight);
 
 /** Develops the weighted mean of the frames that were added, by the film as it is now, into an image of the size and

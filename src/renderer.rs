@@ -468,6 +468,9 @@ impl Renderer {
         let begun = self.accumulation.as_mut().ok_or_else(not_accumulating)?;
         let auto_ev = begun.develop((&lit.film, lit.shown_lut().map(Arc::as_ref)), target, transparent)?;
         self.accumulation = None;
+        // Files of the image say how the scene is now.
+        let [full_width, full_height] = [target.width(), target.height()];
+        self.made.remember(&self.scene, &Region { full_width, full_height, x: 0, y: 0 }, [Place::of(target)]);
         self.stats.publish(FrameStats { auto_ev, ..FrameStats::default() }, start.elapsed());
         Ok(())
     }

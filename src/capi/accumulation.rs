@@ -35,7 +35,7 @@ pub unsafe extern "C" fn bhr_begin_accumulation(
 /// a shutter that opens and shuts at once. The view must be LIGHT; the film does not matter yet. Up to 65536 frames.
 /// After an error nothing is added.
 /// Errors: INVALID_STATE without bhr_begin_accumulation, with a region set, or after too many frames; INVALID_ARGUMENT
-/// for a weight out of range; those of bhr_render_image. @since 0.2.0
+/// for a weight out of range or another view; those of bhr_render_image. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_accumulate(context: *mut BhrContext, weight: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -38,8 +38,8 @@ pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
 /// radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
-/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and
-/// the LUT, or the colour map, dithering.
+/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map,
+/// dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
