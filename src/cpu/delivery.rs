@@ -6,8 +6,8 @@ use super::frame::Frame;
 use crate::allocate::{collected, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
-use crate::film::bloom::{Bloom, Glare};
-use crate::film::metering::{MeterParams, Metered};
+use crate::film::bloom::Bloom;
+use crate::film::metering::{MeterParams, SpreadLight};
 use crate::tracer::{Progress, Tile, TileSink};
 use rayon::prelude::*;
 
@@ -87,12 +87,11 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
             }
             self.tick()?;
         }
-        let cells = meter.map(|_| accumulator.cells()).transpose()?;
-        let glare = self.pool.install(|| accumulator.spread())?;
-        let metered = match meter.zip(cells) {
-            Some((meter, cells)) => Some(self.metered(meter, &glare, &cells)?),
-            None => None,
-        };
+        let before = self.exposure.stops.filter(|_| meter.is_some_and(|meter| meter.cells == self.exposure.cells));
+        let spread = self.pool.install(|| SpreadLight::new(accumulator, meter, before))?;
+        if let Some(meter) = meter {
+            self.exposure = Exposure { cells: meter.cells, stops: spread.stops() };
+        }
         let film = self.frame.film.of_exposed();
         for tile in tiles {
             let light = match keep {
@@ -103,20 +102,11 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
                 }
                 false => self.exposed_light(*tile)?,
             };
-            let light = self.pool.install(|| with_glare(&glare, metered.as_ref(), *tile, &light))?;
+            let light = self.pool.install(|| with_glare(&spread, *tile, &light))?;
             self.deliver(*tile, &film, &light)?;
             self.tick()?;
         }
         Ok(())
-    }
-
-    /// Measures the frame, whose finest grid has these `cells`. Errors: OUT_OF_MEMORY.
-    fn metered(&mut self, meter: MeterParams, glare: &Glare<'_>, cells: &[[f32; 4]]) -> Result<Metered> {
-        let before = self.exposure.stops.filter(|_| self.exposure.cells == meter.cells);
-        let light = |cell: usize| glare.over_cell(cells.get(cell).copied().unwrap_or_default(), cell);
-        let metered = self.pool.install(|| Metered::new(meter, before, light))?;
-        self.exposure = Exposure { cells: meter.cells, stops: Some(metered.stops) };
-        Ok(metered)
     }
 
     /// Errors: CANCELLED; OUT_OF_MEMORY.
@@ -159,13 +149,12 @@ fn rows(tile: Tile, width: usize) -> impl Iterator<Item = std::ops::Range<usize>
 }
 
 /// Errors: OUT_OF_MEMORY.
-fn with_glare(glare: &Glare<'_>, metered: Option<&Metered>, tile: Tile, light: &[[f32; 4]]) -> Result<Vec<[f64; 4]>> {
+fn with_glare(spread: &SpreadLight<'_>, tile: Tile, light: &[[f32; 4]]) -> Result<Vec<[f64; 4]>> {
     let mut with = with_room(light.len(), LIGHT)?;
     let place = |i: usize| (tile.x + i as u32 % tile.width, tile.y + i as u32 / tile.width);
     let pixel = |(i, light): (usize, &[f32; 4])| {
         let (x, y) = place(i);
-        let light = glare.over(*light, x, y);
-        metered.map_or(light, |metered| metered.over(light, x, y)).map(f64::from)
+        spread.over(*light, x, y).map(f64::from)
     };
     light.par_iter().enumerate().map(pixel).collect_into_vec(&mut with);
     Ok(with)

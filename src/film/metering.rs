@@ -13,7 +13,7 @@
 //! read between the nearest eight. Where all light near a pixel is of one stop, the base is that, exactly. So light of
 //! very different luminance, as on both sides of the shadow's edge, does not mix, and no halo appears there.
 
-use super::bloom::Bloom;
+use super::bloom::{Bloom, BloomAccumulator, Glare};
 use super::colour_map::luminance;
 use super::grade::LEAST_BASE;
 use super::tone_map::MAX_SCENE_LIGHT;
@@ -232,6 +232,38 @@ impl Metered {
             }
         }
         (sum[1] + OWN_WEIGHT * (stop - BLOCK_MIDDLE)) / (sum[0] + OWN_WEIGHT) + BLOCK_MIDDLE
+    }
+}
+
+/// The light of a frame that has all of it: with its glare, and as it was metered.
+pub struct SpreadLight<'a> {
+    glare: Glare<'a>,
+    metered: Option<Metered>,
+}
+
+impl<'a> SpreadLight<'a> {
+    /// Once all of a frame's light is in. `meter`: how it is measured, if it is; `before`: as for [`Metered::new`]. On
+    /// the current pool. Errors: OUT_OF_MEMORY.
+    pub fn new(all: BloomAccumulator<'a>, meter: Option<MeterParams>, before: Option<f32>) -> Result<Self> {
+        let cells = meter.map(|_| all.cells()).transpose()?;
+        let glare = all.spread()?;
+        let metered = meter.zip(cells).map(|(meter, cells)| {
+            let own = |number: usize| cells.get(number).copied().unwrap_or_default();
+            Metered::new(meter, before, |number| glare.over_cell(own(number), number))
+        });
+        let metered = metered.transpose()?;
+        Ok(Self { glare, metered })
+    }
+
+    /// The stops that auto exposure adds; `None`: the frame is not metered.
+    pub fn stops(&self) -> Option<f32> {
+        self.metered.as_ref().map(|metered| metered.stops)
+    }
+
+    /// Pixel (x, y) as it is developed, of its own exposed light; alpha as it was.
+    pub fn over(&self, light: [f32; 4], x: u32, y: u32) -> [f32; 4] {
+        let light = self.glare.over(light, x, y);
+        self.metered.as_ref().map_or(light, |metered| metered.over(light, x, y))
     }
 }
 

@@ -3,7 +3,7 @@
 //! they trace. Knows nothing of how light was made, or of hosts' images.
 
 use super::bloom::Bloom;
-use super::metering::{MeterParams, Metered};
+use super::metering::{MeterParams, SpreadLight};
 use super::{FilmParams, develop_row};
 use crate::allocate::{collected, filled};
 use crate::error::Result;
@@ -54,23 +54,16 @@ pub fn develop_whole(
     for (light, y) in bands() {
         accumulator.add([0, y], width, &exposed(light)?);
     }
-    let meter = MeterParams::new(film, &bloom);
-    let cells = meter.map(|_| accumulator.cells()).transpose()?;
-    let glare = accumulator.spread()?;
-    let of_cell =
-        |cells: &[[f32; 4]], number: usize| glare.over_cell(cells.get(number).copied().unwrap_or_default(), number);
-    let metered = meter.zip(cells).map(|(meter, cells)| Metered::new(meter, None, |number| of_cell(&cells, number)));
-    let metered = metered.transpose()?;
+    let spread = SpreadLight::new(accumulator, MeterParams::new(film, &bloom), None)?;
     for (light, y) in bands() {
         let mut with_glare = filled(light.len(), [0.0; 4], LIGHT)?;
         let rows = with_glare.par_chunks_mut(width as usize).zip(light.par_chunks(width as usize));
         rows.zip(y..height).for_each(|((out, light), y)| {
             for ((out, light), x) in out.iter_mut().zip(light).zip(0..) {
-                let light = glare.over(params.exposed_light(light.map(f64::from)), x, y);
-                *out = metered.as_ref().map_or(light, |metered| metered.over(light, x, y)).map(f64::from);
+                *out = spread.over(params.exposed_light(light.map(f64::from)), x, y).map(f64::from);
             }
         });
         deliver(&params.of_exposed(), y, &with_glare)?;
     }
-    Ok(metered.map_or(0.0, |metered| f64::from(metered.stops)))
+    Ok(spread.stops().map_or(0.0, f64::from))
 }
