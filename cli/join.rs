@@ -6,8 +6,8 @@ use crate::ending::Ending;
 use crate::manifest::{Fingerprint, Manifest, Tile};
 use crate::progress::say;
 use bhr::image::{
-    Alpha, Attribute, Channels, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load, load_channels, save,
-    save_channels,
+    Alpha, Attribute, Channels, ColourSpace, Effort, ImageRef, Layout, Loaded, PixelFormat, Values, load,
+    load_channels, save, save_channels,
 };
 use bhr::scene::Region;
 use clap::ArgMatches;
@@ -153,7 +153,7 @@ impl Joined {
         match &self.whole {
             Whole::Bytes(bytes) => {
                 let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), bytes)?;
-                save(&image, Alpha::AsInFile, out)?;
+                save(&image, Alpha::AsInFile, ColourSpace::Rec709, out)?;
             }
             Whole::Channels(all) => save_channels(all, effort, out)?,
         }

@@ -12,7 +12,7 @@ use crate::open::Opener;
 use crate::order::{Order, Place};
 use crate::progress::Progress;
 use crate::signals::Signals;
-use bhr::image::{Alpha, Attribute, Effort, Layer, save, save_layers};
+use bhr::image::{Alpha, Attribute, ColourSpace, Effort, Layer, save, save_layers};
 use bhr::renderer::Renderer;
 use bhr::scene_file::parameters;
 use std::collections::VecDeque;
@@ -274,7 +274,12 @@ impl Picture {
         let images = images.collect::<bhr::error::Result<Vec<_>>>()?;
         match &images[..] {
             [(_, image)] if image.format().is_developed() => {
-                save(image, if self.transparent { Alpha::Premultiplied } else { Alpha::AsInFile }, &made.file)?;
+                save(
+                    image,
+                    if self.transparent { Alpha::Premultiplied } else { Alpha::AsInFile },
+                    ColourSpace::Rec709,
+                    &made.file,
+                )?;
             }
             _ => {
                 let layers = images.into_iter().map(|(channels, image)| Layer { channels, image });

@@ -32,6 +32,10 @@ const Choice FLOWS[] = {
     {"keplerian", BHR_FLOW_KEPLERIAN}, {"angular-momentum", BHR_FLOW_ANGULAR_MOMENTUM}, {"outflow", BHR_FLOW_OUTFLOW},
     {NULL, 0}};
 
+const Choice COLOUR_SPACES[] = {
+    {"rec709", BHR_COLOUR_SPACE_REC709}, {"p3-d65", BHR_COLOUR_SPACE_P3_D65}, {"rec2020", BHR_COLOUR_SPACE_REC2020},
+    {"acescg", BHR_COLOUR_SPACE_ACESCG}, {NULL, 0}};
+
 const Choice TONE_MAPS[] = {
     {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX},
     {"filmic", BHR_TONE_MAP_FILMIC}, {NULL, 0}};
@@ -215,6 +219,9 @@ const Field FILM_FIELDS[] = {
      "frame heights, 0 .. 1, 0 off", NULL},
     {"--colour-map", OPTION_CHOICE, offsetof(BhrFilm, colour_map), NULL, 0, 0, NULL,
      "the colours of a picture", COLOUR_MAPS},
+    {"--spike-blades", OPTION_UINT, offsetof(BhrFilm, spike_blades), NULL, 3, 8, "3 .. 8",
+     "blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many",
+     NULL},
     {"--white-balance", OPTION_DOUBLE, offsetof(BhrFilm, white_balance), "K", 1667, 25000, "1667 .. 25000",
      "kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture", NULL},
     {"--tint", OPTION_DOUBLE, offsetof(BhrFilm, tint), NULL, -1, 1, "-1 .. 1",
@@ -262,6 +269,26 @@ const Field FILM_FIELDS[] = {
      "any number within +-1e15: each is another grain, for instance that of a film's frame", NULL},
     {"--lut-strength", OPTION_DOUBLE, offsetof(BhrFilm, lut_strength), NULL, 0, 1, "0 .. 1",
      "0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off", NULL},
+    {"--spikes", OPTION_DOUBLE, offsetof(BhrFilm, spikes), NULL, 0, 1, "0 .. 1",
+     "diffraction spikes, 0 .. 1, 0 off: the lens throws 0.4 spikes of each pixel's light along the lines that the "
+     "edges of spike_blades make, reddish at their ends", NULL},
+    {"--spike-angle", OPTION_DEGREES, offsetof(BhrFilm, spike_angle), "rad", 0, 0, NULL,
+     "the direction of one spike", NULL},
+    {"--spike-length", OPTION_DOUBLE, offsetof(BhrFilm, spike_length), NULL, 0.01, 2, "0.01 .. 2",
+     "how far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length)", NULL},
+    {"--streak", OPTION_DOUBLE, offsetof(BhrFilm, streak), NULL, 0, 1, "0 .. 1",
+     "the horizontal streak of an anamorphic lens, 0 .. 1, 0 off: 0.4 streak of each pixel's light is thrown to its "
+     "left and right", NULL},
+    {"--streak-length", OPTION_DOUBLE, offsetof(BhrFilm, streak_length), NULL, 0.01, 4, "0.01 .. 4",
+     "how far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length)",
+     NULL},
+    {"--streak-tint", OPTION_DOUBLE, offsetof(BhrFilm, streak_tint), NULL, 0, 0, NULL,
+     "the streak's colour, -1 amber .. 1 blue", NULL},
+    {"--paper-white", OPTION_DOUBLE, offsetof(BhrFilm, paper_white), NULL, 10, 1000, "10 .. 1000",
+     "BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000", NULL},
+    {"--peak", OPTION_DOUBLE, offsetof(BhrFilm, peak), NULL, 100, 10000, "100 .. 10000",
+     "BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is "
+     "rolled off", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

@@ -843,6 +843,24 @@ typedef int32_t BhrFormat;
 #define BHR_FORMAT_RGBA32F 4    /**< 4 floats: linear radiance, Rec. 709 primaries; alpha. */
 #define BHR_FORMAT_R32F 5       /**< 1 float: the value of a view or an output, or the distance of an occluder. */
 
+/** A uint32_t: from the lowest bit on 10 bits of red, green and blue, and 2 of alpha, as in R10G10B10A2 of DXGI and
+ * A2B10G10R10 of Vulkan. High dynamic range by the curve PQ (SMPTE ST 2084), as in HDR10, primaries of Rec. 2020,
+ * full range. Light has the film but its tone map, LUT and colour map; BhrFilm.paper_white and peak say how bright
+ * it is. @since 0.2.0 */
+#define BHR_FORMAT_RGB10A2_PQ 6
+
+/** The bits of RGB10A2_PQ by the curve HLG (ITU-R BT.2100), for a display whose peak is that of the film. @since 0.2.0
+ */
+#define BHR_FORMAT_RGB10A2_HLG 7
+
+/** The primaries of linear light in RGBA16F and RGBA32F. @since 0.2.0 */
+typedef int32_t BhrColourSpace;
+
+#define BHR_COLOUR_SPACE_REC709 0  /**< Rec. 709, white D65. */
+#define BHR_COLOUR_SPACE_P3_D65 1  /**< DCI-P3, white D65 (SMPTE EG 432-1). */
+#define BHR_COLOUR_SPACE_REC2020 2 /**< Rec. 2020, white D65. */
+#define BHR_COLOUR_SPACE_ACESCG 3  /**< ACEScg: AP1, the white of ACES (Academy S-2014-004). */
+
 /** Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by side
  * or interleaved; different contexts may then render them at the same time. Rows from the bottom up are best asked
  * for by BHR_IMAGE_BOTTOM_UP. A negative row_stride with pixels at the last row of the block means the same; if
@@ -865,16 +883,26 @@ typedef struct BhrImage {
      * BHR_IMAGE_LENSED is for bhr_set_occluder only, and elsewhere INVALID_ARGUMENT. */
     uint32_t flags;
     uint32_t reserved; /**< Reserved: 0. */
+    /** BHR_COLOUR_SPACE_*. Default REC709. Others matter to bhr_image_convert and bhr_image_save only; elsewhere they
+     * are INVALID_ARGUMENT. @since 0.2.0 */
+    BhrColourSpace colour_space;
+    uint32_t reserved2; /**< Reserved: 0. @since 0.2.0 */
 } BhrImage;
 
 /** Fills in the defaults. */
 BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 
-/** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
- * grey. Alpha is written as it is. A .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags,
- * as when the frame was rendered, they are divided by alpha. The file appears whole or not at all; one that is
- * replaced keeps its mode and, where the process may set it, its owner, and where path is a symbolic link, its
- * target is written (docs/files.md).
+/** Converts the linear light of an image of RGBA16F or RGBA32F in place, from its colour_space to another, which
+ * becomes its colour_space; white stays white (Bradford's adaptation), alpha stays. All light of bhr lies within
+ * REC709, and so within P3_D65, REC2020 and ACESCG: nothing becomes negative there.
+ * Errors: INVALID_ARGUMENT also for other formats. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_image_convert(BhrImage *image, BhrColourSpace colour_space);
+
+/** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), RGB10A2 to .png of 16 bits without
+ * alpha, float formats to .exr, which says what its primaries are; R32F becomes grey. Alpha is written as it is. A
+ * .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags, as when the frame was rendered, they
+ * are divided by alpha. The file appears whole or not at all; one that is replaced keeps its mode and, where the
+ * process may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
  * Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
  * built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
  * another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
@@ -975,10 +1003,10 @@ typedef int32_t BhrColourMap;
  * linear in the light. */
 #define BHR_COLOUR_MAP_AFMHOT 1
 
-/** How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
- * radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
- * vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map,
- * dithering. */
+/** How light becomes pixels, in formats of 8 and 10 bits and windows of BHR_VIEW_LIGHT only: float formats hold
+ * linear radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto
+ * exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve
+ * and the LUT, or the colour map, dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -993,7 +1021,9 @@ typedef struct BhrFilm {
      * INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md. @since 0.2.0 */
     double beam_fwhm;
     BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0 */
-    uint32_t reserved;       /**< 0. @since 0.2.0 */
+    /** Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many.
+     * 0, the default, stands for 6. @since 0.2.0 */
+    uint32_t spike_blades;
     /** Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
      * 0: colours stay as they are. @since 0.2.0 */
     double white_balance;
@@ -1053,6 +1083,29 @@ typedef struct BhrFilm {
     /** 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
      * @since 0.2.0 */
     double lut_strength;
+    /** Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
+     * that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images
+     * of light are INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0 */
+    double spikes;
+    /** The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0. @since 0.2.0 */
+    double spike_angle;
+    /** How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
+     * Default 0.25. @since 0.2.0 */
+    double spike_length;
+    /** The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is
+     * thrown to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when
+     * they are rendered. docs/colour-and-film.md. @since 0.2.0 */
+    double streak;
+    /** How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+     * Default 0.5. @since 0.2.0 */
+    double streak_length;
+    double streak_tint; /**< The streak's colour, -1 amber .. 1 blue. Default 0: that of the light. @since 0.2.0 */
+    /** BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203,
+     * as in ITU-R BT.2408. @since 0.2.0 */
+    double paper_white;
+    /** BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
+     * rolled off. Default 1000. @since 0.2.0 */
+    double peak;
 } BhrFilm;
 
 /** Fills in the defaults. */

@@ -340,23 +340,9 @@ impl Renderer {
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
         self.scene.hole.check_shown("a frame")?;
-        let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
-        let film = &self.scene.film;
-        let optional = film.glare_is_optional && film.beam_fwhm == 0.0 && !film.is_metered();
-        if blooms && (set || strips) && !optional {
-            let spread = [
-                ("bloom", "glare", film.bloom),
-                ("beam_fwhm", "its light", film.beam_fwhm),
-                ("auto_exposure", "the exposure", film.auto_exposure.strength),
-                ("highlights", "what is bright", film.highlights),
-                ("shadows", "what is dark", film.shadows),
-            ];
-            // Glare that may be left out is not what is in the way.
-            let in_the_way =
-                |(name, _, value): &&(&str, &str, f64)| *value > 0.0 && !(*name == "bloom" && film.glare_is_optional);
-            let Some((name, light, value)) = spread.iter().find(in_the_way).copied() else {
-                return Err(Error::internal("a film that parts of a frame cannot have"));
-            };
+        let spreads = Bloom::is_shown(&self.scene.film, self.scene.view, format);
+        let in_the_way = self.scene.film.needs_whole_frame().filter(|_| spreads && (set || strips));
+        if let Some((name, light, value)) = in_the_way {
             return Err(Error::state(format!(
                 "film {name} is {}: {light} comes from the whole frame, and {} is set; set no {}, or {name} 0",
                 Number(value),
@@ -369,7 +355,7 @@ impl Renderer {
                 return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
             }
             (View::Light, _) | (_, PixelFormat::R32F) => {}
-            (view, format) if !format.is_developed() => {
+            (view, format) if !format.is_developed() || format.is_hdr() => {
                 let view = view.name();
                 return Err(Error::argument(format!("view {view} goes into 8-bit formats or R32F, not {format}")));
             }

@@ -144,6 +144,7 @@ const CELLS: Because = Because(
     "a turn that goes on leaves `cuts` above 1; every other one adds to `cut` or `cell`: 16 times 256 turns at most",
 );
 const BLOCK: Because = Because("it counts the cells of a block, of which the host allows 84 along a side");
+const ELEMENT: Because = Because("it counts the cells of an element, of which the host allows 4");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
@@ -153,6 +154,9 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
+    ("bloom/spikes", "element_light", "for (var j = first; j < end; j += 1u)", ELEMENT),
+    ("bloom/spikes", "spread_line", "for (var term = 0u; term < SPIKE_TERMS; term += 1u)", CONSTANT),
+    ("bloom/spikes", "spread_line", "for (var away = 1u; away < THREADS && power > LEAST_POWER; away *= 2u)", CONSTANT),
     ("camera/chart", "doran_turn", "for (var i = 0u; i < 12u; i += 1u)", CONSTANT),
     ("camera/chart", "rain_offsets", "for (var i = OFFSET_PAIRS - 1u; i > 0u; i--)", CONSTANT),
     ("emit/bake", "bake_texels", "for (var k = 0u; k < ROW_GENERATIONS; k += 1u)", CONSTANT),

@@ -467,9 +467,10 @@ export interface Sky {
 }
 
 /**
- * How light becomes pixels, in 8-bit formats and windows of "light" only: float formats hold linear radiance, and other
- * views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette, white
- * balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map, dithering.
+ * How light becomes pixels, in formats of 8 and 10 bits and windows of "light" only: float formats hold linear
+ * radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto exposure,
+ * highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT,
+ * or the colour map, dithering.
  */
 export interface Film {
     /**
@@ -505,6 +506,13 @@ export interface Film {
      * @default "none"
      */
     colour_map: ColourMap;
+    /**
+     * Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many. 0,
+     * the default, stands for 6.
+     * @range 3 .. 8
+     * @default 0
+     */
+    spike_blades: number;
     /**
      * Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
      * 0: colours stay as they are.
@@ -647,6 +655,61 @@ export interface Film {
      * @default 1
      */
     lut_strength: number;
+    /**
+     * Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
+     * that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images of
+     * light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
+     * @range 0 .. 1
+     * @default 0
+     */
+    spikes: number;
+    /**
+     * The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0.
+     * @unit rad
+     * @default 0
+     */
+    spike_angle: number;
+    /**
+     * How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length). Default
+     * 0.25.
+     * @range 0.01 .. 2
+     * @default 0.25
+     */
+    spike_length: number;
+    /**
+     * The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
+     * to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when they are
+     * rendered. docs/colour-and-film.md.
+     * @range 0 .. 1
+     * @default 0
+     */
+    streak: number;
+    /**
+     * How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+     * Default 0.5.
+     * @range 0.01 .. 4
+     * @default 0.5
+     */
+    streak_length: number;
+    /**
+     * The streak's colour, -1 amber .. 1 blue. Default 0: that of the light.
+     * @default 0
+     */
+    streak_tint: number;
+    /**
+     * BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203, as
+     * in ITU-R BT.2408.
+     * @range 10 .. 1000
+     * @default 203
+     */
+    paper_white: number;
+    /**
+     * BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
+     * rolled off. Default 1000.
+     * @range 100 .. 10000
+     * @default 1000
+     */
+    peak: number;
 }
 
 /** How exactly to trace. */

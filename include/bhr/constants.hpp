@@ -175,6 +175,23 @@ enum class Format : std::int32_t {
     rgba32f = BHR_FORMAT_RGBA32F,
     /// 1 float: the value of a view or an output, or the distance of an occluder.
     r32f = BHR_FORMAT_R32F,
+    /// A uint32_t: from the lowest bit on 10 bits of red, green and blue, and 2 of alpha, as in R10G10B10A2 of DXGI and
+    /// A2B10G10R10 of Vulkan.
+    rgb10a2_pq = BHR_FORMAT_RGB10A2_PQ,
+    /// The bits of RGB10A2_PQ by the curve HLG (ITU-R BT.2100), for a display whose peak is that of the film.
+    rgb10a2_hlg = BHR_FORMAT_RGB10A2_HLG,
+};
+
+/// BhrColourSpace: The primaries of linear light in RGBA16F and RGBA32F.
+enum class ColourSpace : std::int32_t {
+    /// Rec. 709, white D65.
+    rec709 = BHR_COLOUR_SPACE_REC709,
+    /// DCI-P3, white D65 (SMPTE EG 432-1).
+    p3_d65 = BHR_COLOUR_SPACE_P3_D65,
+    /// Rec. 2020, white D65.
+    rec2020 = BHR_COLOUR_SPACE_REC2020,
+    /// ACEScg: AP1, the white of ACES (Academy S-2014-004).
+    acescg = BHR_COLOUR_SPACE_ACESCG,
 };
 
 /// BhrToneMap: The curve from light to pixels.

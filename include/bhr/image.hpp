@@ -53,6 +53,8 @@ constexpr std::size_t bytes_per_pixel(Format format) noexcept {
     case Format::rgba8_srgb:
     case Format::bgra8_srgb:
     case Format::r32f:
+    case Format::rgb10a2_pq:
+    case Format::rgb10a2_hlg:
         return 4;
     case Format::rgba16f:
         return 8;
@@ -73,6 +75,8 @@ struct Image {
     std::uint64_t byte_size;
     ImageFlags flags;
     std::uint32_t reserved;
+    ColourSpace colour_space;
+    std::uint32_t reserved2;
 
     Image() noexcept { detail::defaults(*this, bhr_image_init); }
 
@@ -89,6 +93,15 @@ struct Image {
     }
 
     BhrImage c() const noexcept { return detail::as_c<BhrImage>(*this); }
+
+    /// bhr_image_convert: the pixels, and colour_space with them.
+    Result<void> convert(ColourSpace to) {
+        BhrImage image = c();
+        Result<void> converted =
+            detail::call([&] { return bhr_image_convert(&image, static_cast<BhrColourSpace>(to)); });
+        colour_space = static_cast<ColourSpace>(image.colour_space);
+        return converted;
+    }
 
     /// bhr_image_save.
     Result<void> save(const char *path) const {

@@ -205,8 +205,8 @@ struct Sky {
     BhrSky c() const noexcept { return detail::as_c<BhrSky>(*this); }
 };
 
-/// BhrFilm: How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
-/// radiance, and other views show values. Defaults: bhr_film_init.
+/// BhrFilm: How light becomes pixels, in formats of 8 and 10 bits and windows of BHR_VIEW_LIGHT only: float formats
+/// hold linear radiance, and other views show values. Defaults: bhr_film_init.
 struct Film {
     /// Sizeof(BhrFilm).
     std::uint32_t struct_size;
@@ -222,8 +222,8 @@ struct Film {
     double beam_fwhm;
     /// BHR_COLOUR_MAP_*.
     ColourMap colour_map;
-    /// Reserved: 0.
-    std::uint32_t reserved;
+    /// Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many.
+    std::uint32_t spike_blades;
     /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture.
     double white_balance;
     /// -1 .. 1: the picture turns towards magenta above 0, towards green below.
@@ -269,6 +269,25 @@ struct Film {
     double grain_seed;
     /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off.
     double lut_strength;
+    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
+    /// that the edges of spike_blades make, reddish at their ends.
+    double spikes;
+    /// The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi.
+    double spike_angle;
+    /// How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
+    double spike_length;
+    /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
+    /// to its left and right.
+    double streak;
+    /// How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    double streak_length;
+    /// The streak's colour, -1 amber .. 1 blue.
+    double streak_tint;
+    /// BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000.
+    double paper_white;
+    /// BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
+    /// rolled off.
+    double peak;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

@@ -188,10 +188,11 @@ POSITIONS = {
         "edge_softness"
     ),
     bhr.Film: (
-        "tone_map exposure_ev bloom beam_fwhm colour_map white_balance tint contrast saturation toe_strength "
-        "toe_length shoulder_strength shoulder_length shoulder_angle vignette "
+        "tone_map exposure_ev bloom beam_fwhm colour_map spike_blades white_balance tint contrast saturation "
+        "toe_strength toe_length shoulder_strength shoulder_length shoulder_angle vignette "
         "auto_exposure auto_percentile auto_target auto_least_ev auto_most_ev auto_adaptation highlights shadows "
-        "grain grain_seed"
+        "grain grain_seed lut_strength spikes spike_angle spike_length streak streak_length streak_tint "
+        "paper_white peak"
     ),
     bhr.HotSpot: (
         "radius size azimuth flags absorption temperature spectral_index tint brightness position velocity time"

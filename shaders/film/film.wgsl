@@ -9,13 +9,15 @@
 #import film/encode
 #import film/filmic
 #import film/grade
+#import film/hdr
 #import film/lut
 #import film/params
 #import shared/not_inlined
 
 // The number of the ToneMap that a kernel is made for, or FROM_UNIFORM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
-// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F, or FROM_UNIFORM.
+// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F,
+// RGB10A2, or FROM_UNIFORM.
 override PIXELS: u32 = 0u;
 // The number of the ColourMap that a kernel is made for, or FROM_UNIFORM.
 override COLOUR_MAP: u32 = 0u;
@@ -39,6 +41,17 @@ fn is_r32f() -> bool {
         return not_inlined(film.format) == FORMAT_R32F;
     }
     return PIXELS == PIXELS_R32F;
+}
+
+fn is_hdr() -> bool {
+    if PIXELS == FROM_UNIFORM {
+        // Views have no such pixels.
+        if FALSE_COLOUR {
+            return false;
+        }
+        return not_inlined(film.format) >= FORMAT_RGB10A2_PQ;
+    }
+    return PIXELS == PIXELS_HDR;
 }
 
 fn is_rgba32f() -> bool {
@@ -97,6 +110,9 @@ fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         words = select(vec4<u32>(develop_rgba16f(radiance), 0u, 0u), develop_rgba32f(radiance), is_rgba32f());
     } else if is_r32f() {
         words.x = bitcast<u32>(radiance.x);
+    } else if is_hdr() {
+        let codes = develop_10bit(radiance, x, y);
+        words.x = codes.x | (codes.y << 10u) | (codes.z << 20u) | (codes.w << 30u);
     } else {
         let rgba = develop_8bit(radiance, x, y);
         let codes = select(rgba, rgba.zyxw, film.format == FORMAT_BGRA8);
@@ -119,6 +135,16 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         codes = vec4<u32>(colour, u32(alpha_of(radiance.w) * 255.0 + 0.5));
     }
     return codes;
+}
+
+fn develop_10bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
+    let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
+    var colour = vec3<f32>(0.0);
+    if any(scene != vec3<f32>(0.0)) {
+        let light = with_grade(scene, x, y);
+        colour = select(hlg_codes(light), pq_codes(light), vec3<bool>(film.format == FORMAT_RGB10A2_PQ));
+    }
+    return vec4<u32>(vec3<u32>(colour * 1023.0 + dither(x, y)), u32(alpha_of(radiance.w) * 3.0 + 0.5));
 }
 
 fn develop_rgba16f(radiance: vec4<f32>) -> vec2<u32> {

@@ -197,6 +197,7 @@ unsafe impl Described for BhrFilm {
             offset: offset_of!(BhrFilm, colour_map),
             kind: Kind::Word(&[("none", 0), ("afmhot", 1)]),
         },
+        Field { name: "spike_blades", offset: offset_of!(BhrFilm, spike_blades), kind: Kind::Count },
         Field { name: "white_balance", offset: offset_of!(BhrFilm, white_balance), kind: Kind::Numbers(1) },
         Field { name: "tint", offset: offset_of!(BhrFilm, tint), kind: Kind::Numbers(1) },
         Field { name: "contrast", offset: offset_of!(BhrFilm, contrast), kind: Kind::Numbers(1) },
@@ -218,6 +219,14 @@ unsafe impl Described for BhrFilm {
         Field { name: "grain", offset: offset_of!(BhrFilm, grain), kind: Kind::Numbers(1) },
         Field { name: "grain_seed", offset: offset_of!(BhrFilm, grain_seed), kind: Kind::Numbers(1) },
         Field { name: "lut_strength", offset: offset_of!(BhrFilm, lut_strength), kind: Kind::Numbers(1) },
+        Field { name: "spikes", offset: offset_of!(BhrFilm, spikes), kind: Kind::Numbers(1) },
+        Field { name: "spike_angle", offset: offset_of!(BhrFilm, spike_angle), kind: Kind::Angle },
+        Field { name: "spike_length", offset: offset_of!(BhrFilm, spike_length), kind: Kind::Numbers(1) },
+        Field { name: "streak", offset: offset_of!(BhrFilm, streak), kind: Kind::Numbers(1) },
+        Field { name: "streak_length", offset: offset_of!(BhrFilm, streak_length), kind: Kind::Numbers(1) },
+        Field { name: "streak_tint", offset: offset_of!(BhrFilm, streak_tint), kind: Kind::Numbers(1) },
+        Field { name: "paper_white", offset: offset_of!(BhrFilm, paper_white), kind: Kind::Numbers(1) },
+        Field { name: "peak", offset: offset_of!(BhrFilm, peak), kind: Kind::Numbers(1) },
     ];
 }
 

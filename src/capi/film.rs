@@ -5,13 +5,13 @@ use super::call::on_context;
 use super::context::BhrContext;
 use super::entry::anywhere;
 use super::image::path_of;
-use super::pointer::{check_reserved, is_null, unknown};
+use super::pointer::{is_null, unknown};
 use super::state::State;
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::image::{Lut, LutFile};
-use crate::scene::{AutoExposure, ColourMap, Film, Filmic, Grade, ToneMap};
+use crate::scene::{AutoExposure, ColourMap, Film, Filmic, Grade, Optics, ToneMap};
 use std::ffi::c_char;
 use std::mem::offset_of;
 use std::sync::Arc;
@@ -36,10 +36,10 @@ pub const BHR_COLOUR_MAP_NONE: BhrColourMap = 0;
 /// linear in the light.
 pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
-/// How light becomes pixels, in 8-bit formats and windows of BHR_VIEW_LIGHT only: float formats hold linear
-/// radiance, and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows,
-/// vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map,
-/// dithering.
+/// How light becomes pixels, in formats of 8 and 10 bits and windows of BHR_VIEW_LIGHT only: float formats hold
+/// linear radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto
+/// exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve
+/// and the LUT, or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -60,8 +60,9 @@ pub struct BhrFilm {
     pub beam_fwhm: f64,
     /// BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0
     pub colour_map: BhrColourMap,
-    /// 0. @since 0.2.0
-    pub reserved: u32,
+    /// Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many.
+    /// 0, the default, stands for 6. @since 0.2.0
+    pub spike_blades: u32,
     /// Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
     /// 0: colours stay as they are. @since 0.2.0
     pub white_balance: f64,
@@ -123,12 +124,36 @@ pub struct BhrFilm {
     /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
     /// @since 0.2.0
     pub lut_strength: f64,
+    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
+    /// that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images
+    /// of light are INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0
+    pub spikes: f64,
+    /// The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0. @since 0.2.0
+    pub spike_angle: f64,
+    /// How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
+    /// Default 0.25. @since 0.2.0
+    pub spike_length: f64,
+    /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is
+    /// thrown to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when
+    /// they are rendered. docs/colour-and-film.md. @since 0.2.0
+    pub streak: f64,
+    /// How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    /// Default 0.5. @since 0.2.0
+    pub streak_length: f64,
+    /// The streak's colour, -1 amber .. 1 blue. Default 0: that of the light. @since 0.2.0
+    pub streak_tint: f64,
+    /// BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203,
+    /// as in ITU-R BT.2408. @since 0.2.0
+    pub paper_white: f64,
+    /// BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
+    /// rolled off. Default 1000. @since 0.2.0
+    pub peak: f64,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 208];
+    const SIZES: &'static [usize] = &[24, 272];
     fn defaults() -> Self {
         Film::default().into()
     }
@@ -147,7 +172,7 @@ impl From<Film> for BhrFilm {
             bloom: film.bloom,
             beam_fwhm: film.beam_fwhm,
             colour_map: film.colour_map as BhrColourMap,
-            reserved: 0,
+            spike_blades: film.optics.spike_blades,
             white_balance: film.grade.white_balance,
             tint: film.grade.tint,
             contrast: film.grade.contrast,
@@ -169,6 +194,14 @@ impl From<Film> for BhrFilm {
             grain: film.grade.grain,
             grain_seed: film.grade.grain_seed,
             lut_strength: film.lut_strength,
+            spikes: film.optics.spikes,
+            spike_angle: film.optics.spike_angle,
+            spike_length: film.optics.spike_length,
+            streak: film.optics.streak,
+            streak_length: film.optics.streak_length,
+            streak_tint: film.optics.streak_tint,
+            paper_white: film.paper_white,
+            peak: film.peak,
         }
     }
 }
@@ -191,7 +224,6 @@ impl TryFrom<BhrFilm> for Film {
             BHR_COLOUR_MAP_AFMHOT => ColourMap::Afmhot,
             value => return unknown(value, "film colour_map", "BHR_COLOUR_MAP_NONE (0), _AFMHOT (1)"),
         };
-        check_reserved(given.reserved, "film")?;
         let (exposure_ev, bloom, beam_fwhm) = (given.exposure_ev, given.bloom, given.beam_fwhm);
         let grade = Grade {
             white_balance: given.white_balance,
@@ -218,6 +250,15 @@ impl TryFrom<BhrFilm> for Film {
             adaptation: given.auto_adaptation,
         };
         let (highlights, shadows) = (given.highlights, given.shadows);
+        let optics = Optics {
+            spikes: given.spikes,
+            spike_blades: given.spike_blades,
+            spike_angle: given.spike_angle,
+            spike_length: given.spike_length,
+            streak: given.streak,
+            streak_length: given.streak_length,
+            streak_tint: given.streak_tint,
+        };
         let film = Self {
             tone_map,
             exposure_ev,
@@ -230,6 +271,9 @@ impl TryFrom<BhrFilm> for Film {
             highlights,
             shadows,
             lut_strength: given.lut_strength,
+            optics,
+            paper_white: given.paper_white,
+            peak: given.peak,
             glare_is_optional: false,
         };
         film.check()?;

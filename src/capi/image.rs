@@ -7,7 +7,7 @@ use super::pointer::{check_flags, check_reserved, is_null, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use crate::error::{Error, Result};
-use crate::image::{self, Alpha, ImageMut, Layout, Loaded, PixelFormat};
+use crate::image::{self, Alpha, ColourSpace, ImageMut, Layout, Loaded, PixelFormat};
 use crate::platform::path_of_bytes;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
@@ -41,6 +41,34 @@ pub const BHR_FORMAT_RGBA16F: BhrFormat = 3;
 pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
 /// 1 float: the value of a view or an output, or the distance of an occluder.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
+/// A uint32_t: from the lowest bit on 10 bits of red, green and blue, and 2 of alpha, as in R10G10B10A2 of DXGI and
+/// A2B10G10R10 of Vulkan. High dynamic range by the curve PQ (SMPTE ST 2084), as in HDR10, primaries of Rec. 2020,
+/// full range. Light has the film but its tone map, LUT and colour map; BhrFilm.paper_white and peak say how bright
+/// it is. @since 0.2.0
+pub const BHR_FORMAT_RGB10A2_PQ: BhrFormat = 6;
+/// The bits of RGB10A2_PQ by the curve HLG (ITU-R BT.2100), for a display whose peak is that of the film. @since 0.2.0
+pub const BHR_FORMAT_RGB10A2_HLG: BhrFormat = 7;
+
+/// The primaries of linear light in RGBA16F and RGBA32F. @since 0.2.0
+pub type BhrColourSpace = i32;
+/// Rec. 709, white D65.
+pub const BHR_COLOUR_SPACE_REC709: BhrColourSpace = 0;
+/// DCI-P3, white D65 (SMPTE EG 432-1).
+pub const BHR_COLOUR_SPACE_P3_D65: BhrColourSpace = 1;
+/// Rec. 2020, white D65.
+pub const BHR_COLOUR_SPACE_REC2020: BhrColourSpace = 2;
+/// ACEScg: AP1, the white of ACES (Academy S-2014-004).
+pub const BHR_COLOUR_SPACE_ACESCG: BhrColourSpace = 3;
+
+fn colour_space_of(value: BhrColourSpace) -> Result<ColourSpace> {
+    Ok(match value {
+        BHR_COLOUR_SPACE_REC709 => ColourSpace::Rec709,
+        BHR_COLOUR_SPACE_P3_D65 => ColourSpace::P3D65,
+        BHR_COLOUR_SPACE_REC2020 => ColourSpace::Rec2020,
+        BHR_COLOUR_SPACE_ACESCG => ColourSpace::AcesCg,
+        _ => return unknown(value, "colour space", "BHR_COLOUR_SPACE_REC709 (0) to BHR_COLOUR_SPACE_ACESCG (3)"),
+    })
+}
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by side
 /// or interleaved; different contexts may then render them at the same time. Rows from the bottom up are best asked
@@ -71,12 +99,17 @@ pub struct BhrImage {
     pub flags: u32,
     /// Reserved: 0.
     pub reserved: u32,
+    /// BHR_COLOUR_SPACE_*. Default REC709. Others matter to bhr_image_convert and bhr_image_save only; elsewhere they
+    /// are INVALID_ARGUMENT. @since 0.2.0
+    pub colour_space: BhrColourSpace,
+    /// Reserved: 0. @since 0.2.0
+    pub reserved2: u32,
 }
 
 // SAFETY: repr(C), size first, no padding, integers and a nullable pointer.
 unsafe impl Versioned for BhrImage {
     const NAME: &'static str = "BhrImage";
-    const SIZES: &'static [usize] = &[40 + POINTER];
+    const SIZES: &'static [usize] = &[40 + POINTER, 48 + POINTER];
     fn defaults() -> Self {
         Self { format: BHR_FORMAT_RGBA8_SRGB, ..Self::empty() }
     }
@@ -94,6 +127,8 @@ impl BhrImage {
             byte_size: 0,
             flags: 0,
             reserved: 0,
+            colour_space: BHR_COLOUR_SPACE_REC709,
+            reserved2: 0,
         }
     }
 }
@@ -105,7 +140,9 @@ pub(super) fn format(value: BhrFormat) -> Result<PixelFormat> {
         BHR_FORMAT_RGBA16F => PixelFormat::Rgba16F,
         BHR_FORMAT_RGBA32F => PixelFormat::Rgba32F,
         BHR_FORMAT_R32F => PixelFormat::R32F,
-        _ => return unknown(value, "image format", "BHR_FORMAT_RGBA8_SRGB (1) to BHR_FORMAT_R32F (5)"),
+        BHR_FORMAT_RGB10A2_PQ => PixelFormat::Rgb10A2Pq,
+        BHR_FORMAT_RGB10A2_HLG => PixelFormat::Rgb10A2Hlg,
+        _ => return unknown(value, "image format", "BHR_FORMAT_RGBA8_SRGB (1) to BHR_FORMAT_RGB10A2_HLG (7)"),
     })
 }
 
@@ -130,6 +167,13 @@ pub(super) unsafe fn read_layout(image: *const BhrImage, name: &str) -> Result<(
 /// The layout and the flags, `also` among them.
 fn layout(given: &BhrImage, name: &str, also: u32) -> Result<(Layout, u32)> {
     check_reserved(given.reserved, name)?;
+    check_reserved(given.reserved2, name)?;
+    if given.colour_space != BHR_COLOUR_SPACE_REC709 {
+        return Err(Error::argument(format!(
+            "{name} colour_space is {}; it must be BHR_COLOUR_SPACE_REC709 (0): bhr_image_convert makes others",
+            given.colour_space
+        )));
+    }
     let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP | also;
     let flags = check_flags(given.flags, known, &format!("{name} flags"))?;
     let layout = Layout {
@@ -160,8 +204,28 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Host
 /// As [`read`].
 pub(super) unsafe fn read_with<'a>(image: *const BhrImage, name: &str, also: u32) -> Result<HostImage<'a>> {
     // SAFETY: this function's contract.
+    unsafe { pixels_of(&versioned::read(image, name)?, name, also) }
+}
+
+/// An image that may hold its light in any colour space, and which.
+///
+/// # Safety
+/// As [`read`].
+unsafe fn read_in_space<'a>(image: *const BhrImage, name: &str) -> Result<(HostImage<'a>, ColourSpace)> {
+    // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
-    let (layout, flags) = layout(&given, name, also)?;
+    let space = colour_space_of(given.colour_space)?;
+    // SAFETY: as above.
+    let read = unsafe { pixels_of(&BhrImage { colour_space: BHR_COLOUR_SPACE_REC709, ..given }, name, 0) }?;
+    Ok((read, space))
+}
+
+/// The pixels that a struct describes.
+///
+/// # Safety
+/// The struct's block is the host's during `'a`.
+unsafe fn pixels_of<'a>(given: &BhrImage, name: &str, also: u32) -> Result<HostImage<'a>> {
+    let (layout, flags) = layout(given, name, also)?;
     // SAFETY: the block of byte_size bytes is the host's, by this function's contract.
     let pixels = unsafe {
         match flags & BHR_IMAGE_BOTTOM_UP {
@@ -196,11 +260,27 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
     path_of_bytes(bytes).ok_or_else(|| Error::argument("path is not UTF-8"))
 }
 
-/// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
-/// grey. Alpha is written as it is. A .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags,
-/// as when the frame was rendered, they are divided by alpha. The file appears whole or not at all; one that is
-/// replaced keeps its mode and, where the process may set it, its owner, and where path is a symbolic link, its
-/// target is written (docs/files.md).
+/// Converts the linear light of an image of RGBA16F or RGBA32F in place, from its colour_space to another, which
+/// becomes its colour_space; white stays white (Bradford's adaptation), alpha stays. All light of bhr lies within
+/// REC709, and so within P3_D65, REC2020 and ACESCG: nothing becomes negative there.
+/// Errors: INVALID_ARGUMENT also for other formats. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_image_convert(image: *mut BhrImage, colour_space: BhrColourSpace) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_image_convert", || unsafe {
+        let to = colour_space_of(colour_space)?;
+        let (mut given, from) = read_in_space(image, "image")?;
+        from.convert(&mut given.pixels, to)?;
+        let told = versioned::read(image, "image")?;
+        versioned::write(image, "image", &BhrImage { colour_space, ..told })
+    })
+}
+
+/// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), RGB10A2 to .png of 16 bits without
+/// alpha, float formats to .exr, which says what its primaries are; R32F becomes grey. Alpha is written as it is. A
+/// .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags, as when the frame was rendered, they
+/// are divided by alpha. The file appears whole or not at all; one that is replaced keeps its mode and, where the
+/// process may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
 /// Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
 /// built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
 /// another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
@@ -209,9 +289,9 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_char) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     anywhere("bhr_image_save", || unsafe {
-        let given = read(image, "image")?;
+        let (given, space) = read_in_space(image, "image")?;
         let alpha = if given.transparent { Alpha::Premultiplied } else { Alpha::AsInFile };
-        image::save(&given.pixels.as_image_ref(), alpha, &path_of(path)?)
+        image::save(&given.pixels.as_image_ref(), alpha, space, &path_of(path)?)
     })
 }
 

@@ -3,7 +3,8 @@
 //! goes how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom` and
 //! `src/gpu/frame/passes/bloom.rs` do the same with these numbers. Works on exposed light
 //! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
-//! 8-bit pixels. A telescope's beam (bloom/beam.rs) spreads light by the same grids.
+//! 8-bit pixels. A telescope's beam (bloom/beam.rs) and a lens's spikes (bloom/spikes.rs) spread light by the same
+//! grids.
 //!
 //! The result: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
 //! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
@@ -23,13 +24,15 @@
 //! nearer.
 
 mod beam;
+mod spikes;
 
 pub use beam::{BEAM_SHARES, Beam};
+pub use spikes::{SPIKE_ELEMENTS, SPIKE_TERMS, SpikeLine, Spikes};
 
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
 use crate::image::PixelFormat;
-use crate::scene::{Film, Scene, View};
+use crate::scene::{Film, Optics, Scene, View};
 use rayon::prelude::*;
 
 /// The share s that `bloom` = 1 scatters.
@@ -67,6 +70,8 @@ pub struct Bloom {
     pub levels: Vec<Level>,
     /// The beam, on one of the levels; `None`: the film has none.
     pub beam: Option<Beam>,
+    /// Light thrown along lines, on the finest grid; `None`: the film has none.
+    pub spikes: Option<Spikes>,
 }
 
 /// A grid over the frame.
@@ -181,21 +186,20 @@ fn weights(sigmas: &[f64]) -> (Vec<f64>, f64) {
 impl Bloom {
     /// Whether a frame of this kind has any, or a beam, or has its light measured on the finest grid.
     pub fn is_shown(film: &Film, view: View, format: PixelFormat) -> bool {
-        (film.bloom > 0.0 || film.beam_fwhm > 0.0 || film.is_metered()) && view == View::Light && format.is_developed()
+        let spreads = film.bloom > 0.0 || film.beam_fwhm > 0.0 || film.optics.is_on();
+        (spreads || film.is_metered()) && view == View::Light && format.is_developed()
     }
 
     /// The bloom of a frame; `None`: it has none. `whole`: it is not a region of a larger one, whose glare nobody
     /// knows. Errors: OUT_OF_MEMORY.
     pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2], whole: bool) -> Result<Option<Self>> {
         let film = &scene.film;
-        (whole && Self::is_shown(film, scene.view, format))
-            .then(|| Self::of(film.bloom, film.beam_fwhm, frame))
-            .transpose()
+        (whole && Self::is_shown(film, scene.view, format)).then(|| Self::of(film, frame)).transpose()
     }
 
-    /// Makes the grids for `bloom` and `beam_fwhm` (in frame heights) in [0, 1], and a frame of at least one pixel.
-    /// Errors: OUT_OF_MEMORY.
-    pub fn of(bloom: f64, beam_fwhm: f64, frame: [u32; 2]) -> Result<Self> {
+    /// Makes the grids for a film that has passed its check, and a frame of at least one pixel. Errors: OUT_OF_MEMORY.
+    pub fn of(film: &Film, frame: [u32; 2]) -> Result<Self> {
+        let (bloom, beam_fwhm) = (film.bloom, film.beam_fwhm);
         let cells = |factor: u32| frame.map(|side| u64::from(side.div_ceil(factor)));
         let mut factor = 2;
         while cells(factor).iter().product::<u64>() > MOST_CELLS || cells(factor).iter().any(|&side| side > MOST_SIDE) {
@@ -218,11 +222,25 @@ impl Bloom {
         }
         let direct = 1.0 - scattered * (1.0 - narrow);
         let beam = (beam_fwhm > 0.0).then(|| Beam::new(beam_fwhm * height, factor, levels.len()));
-        let mut bloom = Self { frame, factor, direct: direct as f32, levels, beam };
+        let mut bloom = Self { frame, factor, direct: direct as f32, levels, beam, spikes: None };
         if bloom.beam.is_none() && scattered == 0.0 {
             bloom.levels.truncate(1);
         }
-        Ok(if bloom.beam.is_some() { bloom.through_beam(direct, scattered > 0.0) } else { bloom })
+        if bloom.beam.is_some() {
+            bloom = bloom.through_beam(direct, scattered > 0.0);
+        }
+        Ok(bloom.with_spikes(&film.optics))
+    }
+
+    /// With the light that a lens throws along lines, which the rest then lacks.
+    fn with_spikes(mut self, optics: &Optics) -> Self {
+        let rest = (1.0 - Spikes::share(optics)) as f32;
+        self.direct *= rest;
+        self.levels.iter_mut().for_each(|level| level.weight *= rest);
+        let above = self.weight_above(0);
+        let base = self.levels.first().map(|base| (base.size, base.tails()));
+        let spikes = base.and_then(|base| Spikes::new(optics, base, self.factor, self.frame[1], above));
+        Self { spikes, ..self }
     }
 
     /// The pyramid with its shares as the beam needs them: all light that is spread less than the beam's level spreads
@@ -246,6 +264,8 @@ impl Bloom {
     /// weighted already.
     pub fn weight_above(&self, index: usize) -> f32 {
         match self.levels.get(index) {
+            // The lines' light is added to what the finest grid spreads, weighted already.
+            Some(_) if index == 0 && self.spikes.is_some() => 1.0,
             Some(last) if index + 1 == self.levels.len() => last.weight,
             _ => 1.0,
         }
@@ -354,6 +374,7 @@ impl<'a> BloomAccumulator<'a> {
     /// Once all tiles are in: spreads their light. On the current pool. Errors: OUT_OF_MEMORY.
     pub fn spread(self) -> Result<Glare<'a>> {
         let Self { bloom, base } = self;
+        let own = if bloom.spikes.is_some() { collected(base.iter().copied(), GRIDS)? } else { Vec::new() };
         let mut grids = vec![base];
         for pair in bloom.levels.windows(2) {
             if let ([finer, level], Some(grid)) = (pair, grids.last()) {
@@ -364,6 +385,9 @@ impl<'a> BloomAccumulator<'a> {
         let mut glare = bloom.after_beam(grids.len().saturating_sub(1), grids.pop().unwrap_or_default())?;
         for (index, grid) in grids.into_iter().enumerate().rev() {
             glare = bloom.after_beam(index, bloom.with_coarser(index, grid, &glare))?;
+        }
+        if let Some(spikes) = &bloom.spikes {
+            spikes.add_to(&mut glare, &own)?;
         }
         Ok(Glare { bloom, cells: glare })
     }
@@ -463,3 +487,6 @@ fn between_cells(i: u32, factor: u32, cells: u32) -> ([usize; 2], [f32; 2]) {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod spike_tests;

@@ -343,7 +343,7 @@ mod tests {
     }
 
     fn params(film: &Film, frame: [u32; 2]) -> MeterParams {
-        let bloom = Bloom::of(film.bloom, film.beam_fwhm, frame).expect("grids");
+        let bloom = Bloom::of(film, frame).expect("grids");
         MeterParams::new(film, &bloom).expect("a metered film")
     }
 

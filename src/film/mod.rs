@@ -14,16 +14,18 @@ pub(crate) mod filmic;
 pub(crate) mod metering;
 pub(crate) mod whole;
 pub(crate) mod lut;
+pub(crate) mod hdr;
 
 use crate::image::{Lut, PixelFormat};
 use crate::scene::{ColourMap, Film, ToneMap, View};
 use arrayvec::ArrayVec;
 use filmic::FilmicParams;
 use grade::GradeParams;
+use hdr::HdrParams;
 use lut::LutParams;
 use tone_map::MAX_SCENE_LIGHT;
 
-/// The properties of a frame that film needs: the uniform `film` of the shader, 208 bytes.
+/// The properties of a frame that film needs: the uniform `film` of the shader, 288 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct FilmParams {
@@ -46,6 +48,7 @@ pub struct FilmParams {
     pub grade: GradeParams,
     pub filmic: FilmicParams,
     pub lut: LutParams,
+    pub hdr: HdrParams,
 }
 
 impl FilmParams {
@@ -64,6 +67,7 @@ impl FilmParams {
             grade: GradeParams::new(&film.grade),
             filmic: FilmicParams::new(&film.filmic),
             lut: LutParams::default(),
+            hdr: HdrParams::new(film),
         }
     }
 
@@ -145,11 +149,13 @@ pub fn develop_through(params: &FilmParams, lut: Option<&Lut>, radiance: [f32; 4
 /// view, its value first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that
 /// tiles join without a seam. `lut`: the one that the parameters were made with.
 pub fn develop_row(params: &FilmParams, lut: Option<&Lut>, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
-    use PixelFormat::{Bgra8Srgb, R32F, Rgba8Srgb, Rgba16F, Rgba32F};
+    use PixelFormat::{Bgra8Srgb, R32F, Rgb10A2Hlg, Rgb10A2Pq, Rgba8Srgb, Rgba16F, Rgba32F};
     match (params.pixel_format(), params.false_colour != 0, params.tone_map_kind()) {
         (Rgba16F, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
         (Rgba32F, ..) => write_row(radiance, x, out, |v, _| develop_rgba32f(params, v)),
         (R32F, ..) => write_row(radiance, x, out, |v, _| [v[0].to_bits()]),
+        (Rgb10A2Pq, ..) => write_hdr_row(params, radiance, (x, y), out, hdr::pq_codes),
+        (Rgb10A2Hlg, ..) => write_hdr_row(params, radiance, (x, y), out, hdr::hlg_codes),
         (Rgba8Srgb | Bgra8Srgb, true, _) => {
             write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]);
         }
@@ -238,6 +244,23 @@ fn develop_8bit(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32, colour:
     let noise = dither(x, y);
     let [r, g, b] = colour(scene).map(|v| code(v * 255.0 + noise));
     params.packed_8bit([r, g, b, code(alpha(params, radiance[3]) * 255.0 + 0.5)])
+}
+
+/// Pixels of light in ten bits. `codes`: of exposed, graded light. Rounded as `develop_8bit` does.
+fn write_hdr_row(
+    params: &FilmParams,
+    radiance: &[[f64; 4]],
+    (x, y): (u32, u32),
+    out: &mut [u8],
+    codes: impl Fn(&HdrParams, [f32; 3]) -> [f32; 3],
+) {
+    write_row(radiance, x, out, |v, x| {
+        let scene = [v[0], v[1], v[2]].map(|v| limited(v * params.exposure, MAX_SCENE_LIGHT));
+        let graded = if params.grade.graded == 0 { scene } else { grade::graded(&params.grade, scene, x, y) };
+        let noise = dither(x, y);
+        let [r, g, b] = codes(&params.hdr, graded).map(|v| code(v * 1023.0 + noise));
+        [r | g << 10 | b << 20 | code(alpha(params, v[3]) * 3.0 + 0.5) << 30]
+    });
 }
 
 /// Codes of a view's value, rounded without dither.

@@ -5,7 +5,7 @@
 //! rather than of a formula fitted to it (Kim et al. 2002, Krystek 1985). So a disk of a temperature turns grey when
 //! the balance is set to it. The step from a light's white to D65 is Bradford's (K. M. Lam 1985; ICC.1:2022, annex E).
 
-use crate::image::file;
+use crate::image::primaries;
 use crate::physics::blackbody::radiance_xyz;
 use crate::scene::Grade;
 
@@ -47,7 +47,7 @@ fn white(grade: &Grade) -> [f64; 3] {
 /// The matrix for linear Rec. 709, by columns; `None`: light stays as it is.
 pub fn matrix(grade: &Grade) -> Option<[[f64; 3]; 3]> {
     let is_off = grade.white_balance == 0.0 && grade.tint == 0.0;
-    if is_off { None } else { file::white_balance(white(grade)) }
+    if is_off { None } else { primaries::white_balance(white(grade)) }
 }
 
 #[cfg(test)]

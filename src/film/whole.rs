@@ -47,7 +47,7 @@ pub fn develop_whole(
         }
         return Ok(0.0);
     }
-    let bloom = Bloom::of(film.bloom, film.beam_fwhm, [width, height])?;
+    let bloom = Bloom::of(film, [width, height])?;
     let exposed =
         |light: &[[f32; 4]]| collected(light.iter().map(|light| params.exposed_light(light.map(f64::from))), LIGHT);
     let mut accumulator = bloom.accumulator()?;

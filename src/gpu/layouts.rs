@@ -2,7 +2,7 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::resources::{bloom_textures, meter_buffers, occluder, sky_target};
+use super::frame::resources::{bloom_textures, meter_buffers, occluder, sky_target, spike_buffers};
 use super::frame::uniforms::{bake, band, clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
@@ -17,7 +17,10 @@ fn shared() -> Vec<Layout> {
         saturation = grade + 12, vignette_centre = grade + 16, vignette_scale = grade + 24, vignette = grade + 28,
         white_balance = grade + 32, grain = grade + 80, grain_cells = grade + 84, grain_seed = grade + 88,
         unused = grade + 92, filmic_toe = filmic + 0, filmic_line = filmic + 16, filmic_shoulder = filmic + 32,
-        lut_low = lut + 0, lut_side = lut + 12, lut_scale = lut + 16, lut_strength = lut + 28);
+        lut_low = lut + 0, lut_side = lut + 12, lut_scale = lut + 16, lut_strength = lut + 28,
+        primaries_red = hdr + 0, primaries_green = hdr + 16, primaries_blue = hdr + 32, hdr_white = hdr + 48,
+        hdr_peak = hdr + 52, hdr_knee = hdr + 56, hlg_peak = hdr + 60, hlg_exponent = hdr + 64, unused_1 = hdr + 68,
+        unused_2 = hdr + 72, unused_3 = hdr + 76);
     let [scene, pass] = frame::layouts();
     let [given, start, end] = rays::layouts();
     let [level, beam] = bloom_textures::layouts();
@@ -43,6 +46,7 @@ fn shared() -> Vec<Layout> {
         schwarzschild,
         level,
         beam,
+        spike_buffers::layout(),
         meter,
         exposure,
     ]

@@ -3,6 +3,8 @@
 //! images may lie side by side in one block and be written by different threads. Outside `capi` this is the only
 //! file with raw pointers.
 
+pub use super::pixel_format::PixelFormat;
+
 use super::Copiers;
 use crate::error::{Error, Result};
 use std::marker::PhantomData;
@@ -11,67 +13,6 @@ use std::sync::Arc;
 
 /// Longest side of an image, pixels. A larger one is more than any format's header or any address space holds well.
 pub const MAX_SIDE: u32 = 1 << 20;
-
-/// Bytes in memory order (`BHR_FORMAT_*`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum PixelFormat {
-    Rgba8Srgb = 1,
-    Bgra8Srgb = 2,
-    /// Linear, Rec. 709 primaries.
-    Rgba16F = 3,
-    /// Linear, Rec. 709 primaries.
-    Rgba32F = 4,
-    /// One value: views other than light.
-    R32F = 5,
-}
-
-/// The name in `BHR_FORMAT_*`.
-impl std::fmt::Display for PixelFormat {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Rgba8Srgb => "RGBA8_SRGB",
-            Self::Bgra8Srgb => "BGRA8_SRGB",
-            Self::Rgba16F => "RGBA16F",
-            Self::Rgba32F => "RGBA32F",
-            Self::R32F => "R32F",
-        })
-    }
-}
-
-impl PixelFormat {
-    pub fn bytes_per_pixel(self) -> usize {
-        match self {
-            Self::Rgba8Srgb | Self::Bgra8Srgb | Self::R32F => 4,
-            Self::Rgba16F => 8,
-            Self::Rgba32F => 16,
-        }
-    }
-
-    /// The format whose value in `BHR_FORMAT_*` this is.
-    pub fn of_number(number: u32) -> Option<Self> {
-        [Self::Rgba8Srgb, Self::Bgra8Srgb, Self::Rgba16F, Self::Rgba32F, Self::R32F]
-            .into_iter()
-            .find(|format| *format as i32 as u32 == number)
-    }
-
-    /// Codes, which film makes of light and of views' values; the others hold numbers as they are.
-    pub fn is_developed(self) -> bool {
-        match self {
-            Self::Rgba8Srgb | Self::Bgra8Srgb => true,
-            Self::Rgba16F | Self::Rgba32F | Self::R32F => false,
-        }
-    }
-
-    /// Bytes of one channel; pixels and rows are aligned to it.
-    pub fn channel_bytes(self) -> usize {
-        match self {
-            Self::Rgba8Srgb | Self::Bgra8Srgb => 1,
-            Self::Rgba16F => 2,
-            Self::Rgba32F | Self::R32F => 4,
-        }
-    }
-}
 
 /// How pixels lie in a block of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -369,6 +310,15 @@ impl<'a> ImageMut<'a> {
     /// Has large tiles written with others' help.
     pub fn write_with(&mut self, copiers: Arc<Copiers>) {
         self.copiers = Some(copiers);
+    }
+
+    /// The pixels of row `y`; empty past the last.
+    pub fn row_mut(&mut self, y: u32) -> &mut [u8] {
+        match self.rows.row(y) {
+            // SAFETY: `Rows::new` saw that the block holds this row, and `&mut self` is alone with the image.
+            Some(begin) => unsafe { std::slice::from_raw_parts_mut(begin, self.rows.row_bytes()) },
+            None => &mut [],
+        }
     }
 
     /// The address of the top-left pixel.

@@ -3,11 +3,15 @@
 //! neither scenes nor tracers.
 
 mod copiers;
+mod pixel_format;
 pub mod memory;
+pub(crate) mod primaries;
+mod colour_space;
 mod kept;
 mod lut;
 pub mod file;
 
+pub use colour_space::ColourSpace;
 pub use copiers::Copiers;
 pub use file::{
     Alpha, Attribute, Channels, Effort, Layer, Loaded, Pixels, Values, load, load_text, probe, save, save_layers,

@@ -114,6 +114,51 @@ impl Default for AutoExposure {
     }
 }
 
+/// Light that a lens throws along lines: see `crate::film::bloom::Spikes`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Optics {
+    /// Diffraction spikes, 0 off (default) .. 1.
+    pub spikes: f64,
+    /// Blades of the aperture, 3 .. 8, or 0 (default): 6.
+    pub spike_blades: u32,
+    /// The direction of one spike, anticlockwise from upright, radians, -2 pi .. 2 pi. Default 0.
+    pub spike_angle: f64,
+    /// Where spikes have fallen off, in frame heights, 0.01 .. 2. Default 0.25.
+    pub spike_length: f64,
+    /// The horizontal streak of an anamorphic lens, 0 off (default) .. 1.
+    pub streak: f64,
+    /// Where the streak has fallen off, in frame heights, 0.01 .. 4. Default 0.5.
+    pub streak_length: f64,
+    /// The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
+    pub streak_tint: f64,
+}
+
+impl Default for Optics {
+    fn default() -> Self {
+        Self {
+            spikes: 0.0,
+            spike_blades: 0,
+            spike_angle: 0.0,
+            spike_length: 0.25,
+            streak: 0.0,
+            streak_length: 0.5,
+            streak_tint: 0.0,
+        }
+    }
+}
+
+impl Optics {
+    /// Blades of the aperture.
+    pub fn blades(&self) -> u32 {
+        if self.spike_blades == 0 { 6 } else { self.spike_blades }
+    }
+
+    /// Whether it changes anything.
+    pub fn is_on(&self) -> bool {
+        self.spikes > 0.0 || self.streak > 0.0
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Default `Aces`.
@@ -136,6 +181,11 @@ pub struct Film {
     pub shadows: f64,
     /// The share of what the LUT (`Scene::film_lut`) makes of colours, 0 .. 1. Default 1.
     pub lut_strength: f64,
+    pub optics: Optics,
+    /// Formats of high dynamic range: what a display shows for light of 1, 10 .. 1000 cd/m^2. Default 203.
+    pub paper_white: f64,
+    /// Formats of high dynamic range: the brightest light that a display shows, 100 .. 10000 cd/m^2. Default 1000.
+    pub peak: f64,
     /// Whether frames of a region, which cannot have glare, go without it; else they fail. True (default) until a host
     /// states a film of its own: those that never asked for glare are to get their tiles.
     pub glare_is_optional: bool,
@@ -155,6 +205,9 @@ impl Default for Film {
             highlights: 0.0,
             shadows: 0.0,
             lut_strength: 1.0,
+            optics: Optics::default(),
+            paper_white: 203.0,
+            peak: 1000.0,
             glare_is_optional: true,
         }
     }
@@ -166,15 +219,32 @@ impl Film {
         self.auto_exposure.strength > 0.0 || self.highlights > 0.0 || self.shadows > 0.0
     }
 
-    /// The film without what the light of the whole frame goes into: glare, beam, auto exposure, local tone mapping.
+    /// The film without what the light of the whole frame goes into: glare, beam, spikes, auto exposure, local tone
+    /// mapping.
     pub fn of_parts(self) -> Self {
-        let auto_exposure = AutoExposure::default();
-        Self { bloom: 0.0, beam_fwhm: 0.0, auto_exposure, highlights: 0.0, shadows: 0.0, ..self }
+        let (auto_exposure, optics) = (AutoExposure::default(), Optics::default());
+        Self { bloom: 0.0, beam_fwhm: 0.0, optics, auto_exposure, highlights: 0.0, shadows: 0.0, ..self }
+    }
+
+    /// The first field that asks for the light of the whole frame, and in words what comes from there.
+    /// Glare that may be left out is not among it. `None`: the film can develop parts of a frame.
+    pub fn needs_whole_frame(&self) -> Option<(&'static str, &'static str, f64)> {
+        let bloom = if self.glare_is_optional { 0.0 } else { self.bloom };
+        let needs = [
+            ("bloom", "glare", bloom),
+            ("beam_fwhm", "its light", self.beam_fwhm),
+            ("spikes", "their light", self.optics.spikes),
+            ("streak", "its light", self.optics.streak),
+            ("auto_exposure", "the exposure", self.auto_exposure.strength),
+            ("highlights", "what is bright", self.highlights),
+            ("shadows", "what is dark", self.shadows),
+        ];
+        needs.into_iter().find(|(_, _, value)| *value > 0.0)
     }
 
     /// Errors: a number out of range.
     pub fn check(&self) -> Result<()> {
-        let (grade, filmic, auto) = (&self.grade, &self.filmic, &self.auto_exposure);
+        let (grade, filmic, auto, optics) = (&self.grade, &self.filmic, &self.auto_exposure, &self.optics);
         for (name, value, low, high) in [
             ("exposure_ev", self.exposure_ev, -20.0, 20.0),
             ("bloom", self.bloom, 0.0, 1.0),
@@ -199,10 +269,22 @@ impl Film {
             ("highlights", self.highlights, 0.0, 1.0),
             ("shadows", self.shadows, 0.0, 1.0),
             ("lut_strength", self.lut_strength, 0.0, 1.0),
+            ("spikes", optics.spikes, 0.0, 1.0),
+            ("spike_angle", optics.spike_angle, -std::f64::consts::TAU, std::f64::consts::TAU),
+            ("spike_length", optics.spike_length, 0.01, 2.0),
+            ("streak", optics.streak, 0.0, 1.0),
+            ("streak_length", optics.streak_length, 0.01, 4.0),
+            ("streak_tint", optics.streak_tint, -1.0, 1.0),
+            ("paper_white", self.paper_white, 10.0, 1000.0),
+            ("peak", self.peak, 100.0, 10000.0),
         ] {
             if !(low..=high).contains(&value) {
                 return Err(out_of_range(&format!("film {name}"), value, low, high));
             }
+        }
+        if !matches!(optics.spike_blades, 0 | 3..=8) {
+            let range = out_of_range("film spike_blades", optics.spike_blades.into(), 3.0, 8.0);
+            return Err(Error::argument(format!("{range}, or be 0")));
         }
         let white = grade.white_balance;
         if white != 0.0 && !(COOLEST_WHITE..=HOTTEST_WHITE).contains(&white) {

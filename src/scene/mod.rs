@@ -40,7 +40,7 @@ pub use bodies::{Body, BodyEvent, WorldLineEnd};
 pub use camera::{Camera, Eye, Frustum, Motion, Projection, Transport};
 pub use chart::Chart;
 pub use content::{Scene, SkyPicture, View};
-pub use film::{AutoExposure, ColourMap, Film, Filmic, Grade, ToneMap};
+pub use film::{AutoExposure, ColourMap, Film, Filmic, Grade, Optics, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
 pub use lensing::{KerrThreshold, Lensing};

@@ -124,6 +124,12 @@ static void constants(Watch *watch) {
     image = good_image();
     image.reserved = 1;
     CHECK_BAD(image, "reserved");
+    image = good_image();
+    image.reserved2 = 1;
+    CHECK_BAD(image, "reserved");
+    image = good_image();
+    image.colour_space = BHR_COLOUR_SPACE_ACESCG;
+    CHECK_BAD(image, "colour_space");
     /* Light is four channels. */
     image = good_image();
     image.format = BHR_FORMAT_R32F;

@@ -304,6 +304,46 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, lut_strength), NAN, "lut_strength"},
         {offsetof(BhrFilm, lut_strength), INFINITY, "lut_strength"},
         {offsetof(BhrFilm, lut_strength), -INFINITY, "lut_strength"},
+        {offsetof(BhrFilm, spikes), -0.001, "spikes"},
+        {offsetof(BhrFilm, spikes), 1.001, "spikes"},
+        {offsetof(BhrFilm, spikes), NAN, "spikes"},
+        {offsetof(BhrFilm, spikes), INFINITY, "spikes"},
+        {offsetof(BhrFilm, spikes), -INFINITY, "spikes"},
+        {offsetof(BhrFilm, spike_angle), -6.2842, "spike_angle"},
+        {offsetof(BhrFilm, spike_angle), 6.2842, "spike_angle"},
+        {offsetof(BhrFilm, spike_angle), NAN, "spike_angle"},
+        {offsetof(BhrFilm, spike_angle), INFINITY, "spike_angle"},
+        {offsetof(BhrFilm, spike_angle), -INFINITY, "spike_angle"},
+        {offsetof(BhrFilm, spike_length), 0.009, "spike_length"},
+        {offsetof(BhrFilm, spike_length), 2.001, "spike_length"},
+        {offsetof(BhrFilm, spike_length), NAN, "spike_length"},
+        {offsetof(BhrFilm, spike_length), INFINITY, "spike_length"},
+        {offsetof(BhrFilm, spike_length), -INFINITY, "spike_length"},
+        {offsetof(BhrFilm, streak), -0.001, "streak"},
+        {offsetof(BhrFilm, streak), 1.001, "streak"},
+        {offsetof(BhrFilm, streak), NAN, "streak"},
+        {offsetof(BhrFilm, streak), INFINITY, "streak"},
+        {offsetof(BhrFilm, streak), -INFINITY, "streak"},
+        {offsetof(BhrFilm, streak_length), 0.009, "streak_length"},
+        {offsetof(BhrFilm, streak_length), 4.001, "streak_length"},
+        {offsetof(BhrFilm, streak_length), NAN, "streak_length"},
+        {offsetof(BhrFilm, streak_length), INFINITY, "streak_length"},
+        {offsetof(BhrFilm, streak_length), -INFINITY, "streak_length"},
+        {offsetof(BhrFilm, streak_tint), -1.001, "streak_tint"},
+        {offsetof(BhrFilm, streak_tint), 1.001, "streak_tint"},
+        {offsetof(BhrFilm, streak_tint), NAN, "streak_tint"},
+        {offsetof(BhrFilm, streak_tint), INFINITY, "streak_tint"},
+        {offsetof(BhrFilm, streak_tint), -INFINITY, "streak_tint"},
+        {offsetof(BhrFilm, paper_white), 9.99, "paper_white"},
+        {offsetof(BhrFilm, paper_white), 1000.1, "paper_white"},
+        {offsetof(BhrFilm, paper_white), NAN, "paper_white"},
+        {offsetof(BhrFilm, paper_white), INFINITY, "paper_white"},
+        {offsetof(BhrFilm, paper_white), -INFINITY, "paper_white"},
+        {offsetof(BhrFilm, peak), 99.99, "peak"},
+        {offsetof(BhrFilm, peak), 10000.1, "peak"},
+        {offsetof(BhrFilm, peak), NAN, "peak"},
+        {offsetof(BhrFilm, peak), INFINITY, "peak"},
+        {offsetof(BhrFilm, peak), -INFINITY, "peak"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));
@@ -315,9 +355,12 @@ static void film(Watch *watch, BhrContext *context) {
         CHECK_OK(bhr_film_init(&value, sizeof value));
         value.colour_map = unknown[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "colour_map", bhr_set_film(context, &value));
+    }
+    static const uint32_t blades[] = {1, 2, 9, 1000, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(blades); i++) {
         CHECK_OK(bhr_film_init(&value, sizeof value));
-        value.reserved = (uint32_t)unknown[i];
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_film(context, &value));
+        value.spike_blades = blades[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spike_blades", bhr_set_film(context, &value));
     }
     /* At the limits: from black to white, under every tone map. */
     for (int32_t tone_map = BHR_TONE_MAP_NONE; tone_map <= BHR_TONE_MAP_FILMIC; tone_map++) {

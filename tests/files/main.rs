@@ -370,7 +370,12 @@ fn child_saves_past_the_file_size_limit() {
             limit.rlim_cur = 10_000;
             assert_eq!(libc::setrlimit(libc::RLIMIT_FSIZE, &limit), 0);
             let bytes = bytemuck::cast_slice(&picture);
-            let saved = image::save(&ImageRef::new(layout, bytes).unwrap(), image::Alpha::Premultiplied, &path);
+            let saved = image::save(
+                &ImageRef::new(layout, bytes).unwrap(),
+                image::Alpha::Premultiplied,
+                image::ColourSpace::Rec709,
+                &path,
+            );
             limit.rlim_cur = before;
             assert_eq!(libc::setrlimit(libc::RLIMIT_FSIZE, &limit), 0);
             saved

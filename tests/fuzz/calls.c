@@ -257,10 +257,8 @@ static void scene_call(BhrContext *context) {
         film.colour_map = constant(1);
         film.white_balance = number();
         film.tint = number();
-        film.contrast = number();
-        film.saturation = number();
-        film.toe_strength = number();
-        film.toe_length = number();
+        film.contrast = number(), film.saturation = number();
+        film.toe_strength = number(), film.toe_length = number();
         film.shoulder_strength = number();
         film.shoulder_length = number();
         film.shoulder_angle = number();
@@ -270,9 +268,11 @@ static void scene_call(BhrContext *context) {
         film.auto_target = number();
         film.auto_least_ev = number(), film.auto_most_ev = number();
         film.auto_adaptation = number();
-        film.highlights = number(), film.shadows = number();
-        film.grain = number(), film.grain_seed = number();
-        film.lut_strength = number();
+        film.highlights = number(), film.shadows = number(), film.grain = number(), film.grain_seed = number();
+        film.lut_strength = number(), film.spike_blades = byte();
+        film.spikes = number(), film.spike_angle = number(), film.spike_length = number();
+        film.streak = number(), film.streak_length = number(), film.streak_tint = number();
+        film.paper_white = number(), film.peak = number();
         check(bhr_set_film(context, &film));
         for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {
             nodes[i] = byte() < 255 ? byte() / 255.0f : (float)number();

@@ -140,12 +140,14 @@ fn layouts_hold_in_rust() {
         }
         body::BhrBody { struct_size, chart, position, velocity, time, proper_time, end, reserved }
         transfer::BhrTransfer { fate, reserved, intensity, optical_depth, light }
-        image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved }
+        image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved,
+            colour_space, reserved2 }
         sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }
-        film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved, white_balance, tint,
-            contrast, saturation, toe_strength, toe_length, shoulder_strength, shoulder_length, shoulder_angle,
+        film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, spike_blades, white_balance,
+            tint, contrast, saturation, toe_strength, toe_length, shoulder_strength, shoulder_length, shoulder_angle,
             vignette, auto_exposure, auto_percentile, auto_target, auto_least_ev, auto_most_ev, auto_adaptation,
-            highlights, shadows, grain, grain_seed, lut_strength }
+            highlights, shadows, grain, grain_seed, lut_strength, spikes, spike_angle, spike_length, streak,
+            streak_length, streak_tint, paper_white, peak }
         preset::BhrPresetOptions { struct_size, matter, width, height, frame_ms, measure_anew, may_halve }
         quality::BhrQuality {
             struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale,

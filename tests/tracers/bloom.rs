@@ -7,7 +7,7 @@ use crate::random::runs_all;
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, ColourMap, Region, Scene, ToneMap, View};
+use bhr::scene::{Camera, ColourMap, Optics, Region, Scene, ToneMap, View};
 
 type Change = fn(&mut Scene);
 
@@ -31,7 +31,7 @@ fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()))
 }
 
-const SCENES: [(&str, Change); 6] = [
+const SCENES: [(&str, Change); 8] = [
     ("default", |_| ()),
     ("three stops more, spin 0.9, AgX", |s| {
         (s.hole.spin, s.film.exposure_ev, s.film.tone_map) = (0.9, 3.0, ToneMap::Agx);
@@ -42,6 +42,11 @@ const SCENES: [(&str, Change); 6] = [
     ("a beam", |s| s.film.beam_fwhm = 0.1),
     ("a beam of a few pixels, in one colour map", |s| {
         (s.film.beam_fwhm, s.film.tone_map, s.film.colour_map) = (0.025, ToneMap::None, ColourMap::Afmhot);
+    }),
+    ("spikes", |s| s.film.optics = Optics { spikes: 1.0, spike_blades: 5, spike_angle: 0.3, ..Optics::default() }),
+    ("spikes and a streak, metered, spin 0.9", |s| {
+        (s.hole.spin, s.film.auto_exposure.strength, s.film.highlights) = (0.9, 1.0, 0.5);
+        s.film.optics = Optics { spikes: 0.5, streak: 1.0, streak_tint: 0.7, ..Optics::default() };
     }),
     ("several samples, turbulent, translucent", |s| {
         s.quality.samples_per_pixel = 3;

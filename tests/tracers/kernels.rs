@@ -174,6 +174,12 @@ fn steps_apart(format: PixelFormat, own: &[u8], any: &[u8]) -> f64 {
         PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => {
             pairs(1).map(|(a, b)| apart(a[0].into(), b[0].into())).fold(0.0, f64::max)
         }
+        PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => {
+            let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+            let channel = |word: u32, low: u32| f64::from(word >> low & 1023);
+            let apart = |a: u32, b: u32| [0, 10, 20, 30].map(|low| (channel(a, low) - channel(b, low)).abs());
+            pairs(4).flat_map(|(a, b)| apart(word(a), word(b))).fold(0.0, f64::max)
+        }
         PixelFormat::Rgba16F => pairs(2).map(|(a, b)| apart(half(a), half(b))).fold(0.0, f64::max),
         PixelFormat::Rgba32F | PixelFormat::R32F => {
             let relative = |a: f64, b: f64| 1024.0 * apart(a, b) / (a.abs().max(b.abs()) + 1e-4).min(f64::MAX);

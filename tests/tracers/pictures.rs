@@ -350,6 +350,10 @@ fn furthest_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> f64 {
     let values = |bytes: &[u8]| -> Vec<f64> {
         match format {
             PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => bytes.iter().map(|code| f64::from(*code)).collect(),
+            PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => {
+                let words = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap()));
+                words.flat_map(|word| [0, 10, 20, 30].map(|low| f64::from(word >> low & 1023))).collect()
+            }
             PixelFormat::Rgba16F => {
                 let halves = bytes.chunks_exact(2).map(|half| half::f16::from_le_bytes([half[0], half[1]]));
                 halves.map(f64::from).collect()
@@ -381,7 +385,8 @@ fn pixels_put_by_rows_are_the_same() {
     let mut deferred = 0;
     // A wide enough look at the shadow's edge, where pixels are deferred.
     renderer.scene.camera = camera(20.0, 75.0, 40.0, Motion::Static);
-    let light = [PixelFormat::Rgba8Srgb, PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
+    use PixelFormat::{Bgra8Srgb, Rgb10A2Pq, Rgba8Srgb, Rgba16F, Rgba32F};
+    let light = [Rgba8Srgb, Bgra8Srgb, Rgb10A2Pq, Rgba16F, Rgba32F];
     let light = light.map(|format| (format, View::Light));
     for (spin, samples, tables) in [
         (0.0, 1, LensTables::Never),
@@ -401,6 +406,7 @@ fn pixels_put_by_rows_are_the_same() {
                 let most = match format {
                     _ if adapter.info.software => 0.0,
                     PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => 1.0,
+                    PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => 1.0,
                     PixelFormat::Rgba16F | PixelFormat::Rgba32F => 1e-3,
                     PixelFormat::R32F => 0.0,
                 };

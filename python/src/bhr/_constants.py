@@ -178,6 +178,24 @@ class Format(enum.IntEnum):
     RGBA32F = 4
     #: 1 float: the value of a view or an output, or the distance of an occluder.
     R32F = 5
+    #: A uint32_t: from the lowest bit on 10 bits of red, green and blue, and 2 of alpha, as in R10G10B10A2 of DXGI and
+    #: A2B10G10R10 of Vulkan.
+    RGB10A2_PQ = 6
+    #: The bits of RGB10A2_PQ by the curve HLG (ITU-R BT.2100), for a display whose peak is that of the film.
+    RGB10A2_HLG = 7
+
+
+class ColourSpace(enum.IntEnum):
+    """The primaries of linear light in RGBA16F and RGBA32F."""
+
+    #: Rec. 709, white D65.
+    REC709 = 0
+    #: DCI-P3, white D65 (SMPTE EG 432-1).
+    P3_D65 = 1
+    #: Rec. 2020, white D65.
+    REC2020 = 2
+    #: ACEScg: AP1, the white of ACES (Academy S-2014-004).
+    ACESCG = 3
 
 
 class ToneMap(enum.IntEnum):
@@ -429,8 +447,10 @@ VolumeShapeName = Literal["disk", "torus", "halo", "jet"]
 VolumeShapeLike = Union[VolumeShape, VolumeShapeName]
 FlowName = Literal["keplerian", "angular_momentum", "outflow"]
 FlowLike = Union[Flow, FlowName]
-FormatName = Literal["rgba8_srgb", "bgra8_srgb", "rgba16f", "rgba32f", "r32f"]
+FormatName = Literal["rgba8_srgb", "bgra8_srgb", "rgba16f", "rgba32f", "r32f", "rgb10a2_pq", "rgb10a2_hlg"]
 FormatLike = Union[Format, FormatName]
+ColourSpaceName = Literal["rec709", "p3_d65", "rec2020", "acescg"]
+ColourSpaceLike = Union[ColourSpace, ColourSpaceName]
 ToneMapName = Literal["none", "aces", "agx", "filmic"]
 ToneMapLike = Union[ToneMap, ToneMapName]
 ColourMapName = Literal["none", "afmhot"]
@@ -461,6 +481,7 @@ NAMES: dict[type[enum.IntEnum], Any] = {
     VolumeShape: VolumeShapeName,
     Flow: FlowName,
     Format: FormatName,
+    ColourSpace: ColourSpaceName,
     ToneMap: ToneMapName,
     ColourMap: ColourMapName,
     Preset: PresetName,

@@ -261,9 +261,10 @@ class Sky(Struct):
 
 @dataclasses.dataclass(frozen=True)
 class Film(Struct):
-    """How light becomes pixels, in 8-bit formats and windows of View.LIGHT only: float formats hold linear radiance,
-    and other views show values. In this order: exposure, bloom, beam, auto exposure, highlights and shadows, vignette,
-    white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT, or the colour map, dithering."""
+    """How light becomes pixels, in formats of 8 and 10 bits and windows of View.LIGHT only: float formats hold linear
+    radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto exposure,
+    highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT,
+    or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -283,6 +284,9 @@ class Film(Struct):
     beam_fwhm: float = 0.0
     #: One of ColourMap. Default NONE.
     colour_map: Named[ColourMap, ColourMapName] = named(ColourMap.NONE)
+    #: Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many. 0,
+    #: the default, stands for 6.
+    spike_blades: int = 0
     #: Kelvin, 1667 .. 25000, of the blackbody whose light is to look white: the lower, the bluer the picture. Default
     #: 0: colours stay as they are.
     white_balance: float = 0.0
@@ -341,6 +345,30 @@ class Film(Struct):
     grain_seed: float = 0.0
     #: 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
     lut_strength: float = 1.0
+    #: Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
+    #: that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images of
+    #: light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
+    spikes: float = 0.0
+    #: The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0.
+    spike_angle: float = 0.0
+    #: How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length). Default
+    #: 0.25.
+    spike_length: float = 0.25
+    #: The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
+    #: to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when they are
+    #: rendered. docs/colour-and-film.md.
+    streak: float = 0.0
+    #: How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    #: Default 0.5.
+    streak_length: float = 0.5
+    #: The streak's colour, -1 amber .. 1 blue. Default 0: that of the light.
+    streak_tint: float = 0.0
+    #: BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203, as
+    #: in ITU-R BT.2408.
+    paper_white: float = 203.0
+    #: BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
+    #: rolled off. Default 1000.
+    peak: float = 1000.0
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Format, FormatLike, OutputKind, View
+from ._constants import ColourSpace, ColourSpaceLike, Format, FormatLike, OutputKind, View
 from ._ffi import ffi
 from ._library import check, lib
 from ._names import member
@@ -24,34 +24,42 @@ _DTYPES: dict[Format, type[np.generic]] = {
     Format.RGBA16F: np.float16,
     Format.RGBA32F: np.float32,
     Format.R32F: np.float32,
+    Format.RGB10A2_PQ: np.uint32,
+    Format.RGB10A2_HLG: np.uint32,
 }
+#: Formats whose pixels are one number each.
+_FLAT = (Format.R32F, Format.RGB10A2_PQ, Format.RGB10A2_HLG)
 
 
 class Frame:
     """A picture, or the values of a view. `array` is its memory; np.asarray(frame) is the same array."""
 
     # A slip in an attribute's name is an AttributeError.
-    __slots__ = ("__weakref__", "array", "format", "transparent")
+    __slots__ = ("__weakref__", "array", "colour_space", "format", "transparent")
 
     array: npt.NDArray[Any]
     format: Format
     #: Colours are premultiplied by alpha: a rendered frame's, where `transparent` was asked for. PNG files have
     #: straight colours, which `save` and `to_png` then make. False for a new frame.
     transparent: bool
+    #: The primaries of linear light. Rendered frames have REC709; `convert` makes others.
+    colour_space: ColourSpace
 
     def __init__(self, array: npt.NDArray[Any], format: FormatLike | None = None) -> None:
         """Wraps an array, without a copy: uint8 (RGBA8_SRGB, or BGRA8_SRGB if `format` says so), float16 or float32 of
-        shape (height, width, 4), or float32 of shape (height, width). Rows may have any stride; pixels are packed."""
+        shape (height, width, 4), or of shape (height, width) float32, or uint32 (RGB10A2_PQ, or RGB10A2_HLG if `format`
+        says so). Rows may have any stride; pixels are packed."""
         self.format = _format(array, format)
         self.array = array
         self.transparent = False
+        self.colour_space = ColourSpace.REC709
         self.image()
 
     @classmethod
     def empty(cls, width: int, height: int, format: FormatLike = Format.RGBA8_SRGB) -> Frame:
         """A frame with memory of its own, not yet filled."""
         format = member(Format, format, "format")
-        shape = (height, width) if format == Format.R32F else (height, width, 4)
+        shape = (height, width) if format in _FLAT else (height, width, 4)
         return cls(np.empty(shape, _DTYPES[format]), format)
 
     @property
@@ -69,6 +77,7 @@ class Frame:
             raise ValueError("the array is read-only")
         image = new("BhrImage")
         image.format, image.width, image.height, image.flags = self.format, self.width, self.height, flags
+        image.colour_space = self.colour_space
         pixel = array.itemsize * (4 if array.ndim == 3 else 1)
         row, between = pixel * self.width, array.strides[0]
         packed = self.width <= 1 or array.strides[1] == pixel
@@ -85,13 +94,19 @@ class Frame:
         image.pixels = ffi.cast("void *", array.__array_interface__["data"][0])
         return image
 
+    def convert(self, colour_space: ColourSpaceLike) -> None:
+        """Converts linear light (RGBA16F or RGBA32F) in place to other primaries: "ACESCG", "REC2020", "P3_D65"."""
+        image = self.image(writable=True)
+        check(lib.bhr_image_convert(image, member(ColourSpace, colour_space, "colour_space")))
+        self.colour_space = ColourSpace(image.colour_space)
+
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes 8-bit frames to .png or .ppm, float frames to .exr."""
+        """Writes 8-bit frames to .png or .ppm, those of high dynamic range to .png, float frames to .exr."""
         flags = lib.BHR_IMAGE_TRANSPARENT if self.transparent else 0
         check(lib.bhr_image_save(self.image(flags=flags), _path(path)))
 
     def to_png(self) -> bytes:
-        """The PNG file of an 8-bit frame."""
+        """The PNG file of an 8-bit frame, or of one of high dynamic range."""
         with tempfile.TemporaryDirectory(prefix="bhr-") as folder:
             file = Path(folder, "frame.png")
             self.save(file)
@@ -130,13 +145,13 @@ def _format(array: Any, format: FormatLike | None) -> Format:
     if not array.dtype.isnative:
         raise TypeError("the array's bytes are in the order of another machine")
     for known, dtype in _DTYPES.items():
-        shaped = array.ndim == 2 if known == Format.R32F else array.ndim == 3 and array.shape[2] == 4
+        shaped = array.ndim == 2 if known in _FLAT else array.ndim == 3 and array.shape[2] == 4
         if shaped and array.dtype == dtype and given in (None, known):
             return known
     wanted = "" if given is None else f" for {given.name}"
     raise TypeError(
         f"an array of {array.dtype} with shape {array.shape} does not do{wanted}: uint8, float16 or float32 with shape"
-        " (height, width, 4), or float32 with shape (height, width) for the values of a view"
+        " (height, width, 4), or with shape (height, width) float32 for the values of a view, uint32 for RGB10A2"
     )
 
 

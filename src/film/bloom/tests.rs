@@ -6,6 +6,10 @@ use crate::random::runs_all;
 
 type Field = Vec<[f32; 4]>;
 
+fn bloom_of(bloom: f64, beam_fwhm: f64, frame: [u32; 2]) -> Result<Bloom> {
+    Bloom::of(&Film { bloom, beam_fwhm, ..Film::plain() }, frame)
+}
+
 fn black([width, height]: [u32; 2]) -> Field {
     vec![[0.0; 4]; (width * height) as usize]
 }
@@ -55,7 +59,7 @@ fn ring(field: &Field, width: u32, [x, y]: [u32; 2], radius: f64, formula: impl 
 #[test]
 fn no_light_is_lost_or_made_wherever_it_lies() {
     for frame in [[1, 1], [2, 1], [7, 5], [64, 64], [101, 67], [333, 17], [1, 200], [640, 361]] {
-        let bloom = Bloom::of(1.0, 0.0, frame).expect("grids");
+        let bloom = bloom_of(1.0, 0.0, frame).expect("grids");
         let shares = f64::from(bloom.direct) + bloom.levels.iter().map(|l| f64::from(l.weight)).sum::<f64>();
         assert!((shares - 1.0).abs() < 1e-6, "{frame:?}: {shares}");
         let ends = |side: u32| [0, 1, side / 2, side.saturating_sub(3), side.saturating_sub(2), side - 1];
@@ -72,7 +76,7 @@ fn no_light_is_lost_or_made_wherever_it_lies() {
 fn an_even_frame_stays_even() {
     for frame in [[5, 3], [129, 67], [640, 361]] {
         let out = bloomed(
-            &Bloom::of(1.0, 0.0, frame).expect("grids"),
+            &bloom_of(1.0, 0.0, frame).expect("grids"),
             &vec![[0.5, 0.25, 2.0, 0.75]; (frame[0] * frame[1]) as usize],
             frame,
         );
@@ -91,7 +95,7 @@ fn light_falls_as_the_formula_says_and_alike_in_all_directions() {
     let heights: &[u32] = if runs_all() { &[360, 1080] } else { &[360] };
     for &height in heights {
         let h = f64::from(height);
-        let bloom = Bloom::of(1.0, 0.0, [height, height]).expect("grids");
+        let bloom = bloom_of(1.0, 0.0, [height, height]).expect("grids");
         let formula = |r: f64| {
             let q = r * r + (h / 180.0).powi(2);
             q.powf(-1.5) + 28.0 / (h * q)
@@ -117,7 +121,7 @@ fn light_falls_as_the_formula_says_and_alike_in_all_directions() {
 /// bump's do.
 #[test]
 fn no_blocks_show() {
-    let bloom = Bloom::of(1.0, 0.0, [512, 512]).expect("grids");
+    let bloom = bloom_of(1.0, 0.0, [512, 512]).expect("grids");
     let glare = point(&bloom, [257, 251]);
     for y in [251_usize, 280, 330] {
         let row = glare[y * 512..(y + 1) * 512].iter().map(|v| f64::from(v[0])).collect::<Vec<_>>();
@@ -133,7 +137,7 @@ fn no_blocks_show() {
 /// A spot of two pixels' width that moves by sixteenths of a pixel.
 #[test]
 fn glare_moves_smoothly_with_its_light() {
-    let bloom = Bloom::of(1.0, 0.0, [256, 256]).expect("grids");
+    let bloom = bloom_of(1.0, 0.0, [256, 256]).expect("grids");
     let frame = |shift: f64| {
         let mut light = black([256, 256]);
         for (i, v) in light.iter_mut().enumerate() {
@@ -158,7 +162,7 @@ fn glare_moves_smoothly_with_its_light() {
 #[test]
 fn tiles_do_not_show() {
     let frame = [203, 77];
-    let bloom = Bloom::of(0.7, 0.0, frame).expect("grids");
+    let bloom = bloom_of(0.7, 0.0, frame).expect("grids");
     let light = (0..frame[0] * frame[1]).map(|i| [(i * 7919 % 1013) as f32; 4]).collect::<Field>();
     let whole = bloomed(&bloom, &light, frame);
     for tile in [[64, 9], [1, 77], [203, 1], [50, 50]] {
@@ -173,14 +177,14 @@ fn tiles_do_not_show() {
 #[test]
 fn the_finest_grid_is_bounded_and_glare_hardly_depends_on_it() {
     for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1], [1 << 20, 1], [7, 1 << 20]] {
-        let bloom = Bloom::of(0.5, 0.0, frame).expect("grids");
+        let bloom = bloom_of(0.5, 0.0, frame).expect("grids");
         assert!(bloom.levels[0].cells() as u64 <= MOST_CELLS && bloom.factor.is_multiple_of(2), "{frame:?}");
         assert!(bloom.levels[0].size.iter().all(|&side| u64::from(side) <= MOST_SIDE + 2), "{frame:?}");
     }
-    let bloom = Bloom::of(1.0, 0.0, [7680, 4320]).expect("grids");
+    let bloom = bloom_of(1.0, 0.0, [7680, 4320]).expect("grids");
     assert_eq!(bloom.factor, 4);
     let light = |w: &Bloom| w.levels.iter().map(|l| l.weight).sum::<f32>();
-    assert!((light(&bloom) - light(&Bloom::of(1.0, 0.0, [3840, 2160]).expect("grids"))).abs() < 0.002);
+    assert!((light(&bloom) - light(&bloom_of(1.0, 0.0, [3840, 2160]).expect("grids"))).abs() < 0.002);
 }
 
 #[test]
@@ -214,7 +218,7 @@ fn a_beam_is_the_gaussian_that_is_stated() {
     const SIGMA: f64 = 2.354_820_045;
     for (fwhm, half) in [(1.0, 60), (2.0, 60), (3.0, 60), (4.1, 60), (7.0, 60), (13.0, 80), (29.0, 140), (90.0, 400)] {
         let frame = [2 * half + 7; 2];
-        let bloom = Bloom::of(0.0, fwhm / f64::from(frame[1]), frame).expect("grids");
+        let bloom = bloom_of(0.0, fwhm / f64::from(frame[1]), frame).expect("grids");
         let sigma: f64 = fwhm / SIGMA;
         let peak = 1e4 / (std::f64::consts::TAU * sigma * sigma);
         let mut worst = 0.0_f64;
@@ -250,7 +254,7 @@ fn a_beam_is_the_gaussian_that_is_stated() {
 fn a_beam_keeps_even_light_and_sums_at_every_border() {
     for (bloom, beam) in [(0.0, 0.02), (0.0, 0.3), (0.0, 1.0), (0.5, 0.1), (1.0, 0.004)] {
         for frame in [[1, 1], [5, 3], [64, 64], [128, 64], [640, 352]] {
-            let spread = Bloom::of(bloom, beam, frame).expect("grids");
+            let spread = bloom_of(bloom, beam, frame).expect("grids");
             let even = bloomed(&spread, &vec![[0.5; 4]; (frame[0] * frame[1]) as usize], frame);
             assert!(even.iter().all(|v| (v[0] - 0.5).abs() < 1e-4), "{bloom} {beam} {frame:?}");
             let mut light = black(frame);
@@ -273,7 +277,7 @@ fn a_beam_keeps_even_light_and_sums_at_every_border() {
 #[test]
 fn a_beam_leaves_the_glare_s_wings() {
     let frame = [256, 256];
-    let [wide, both] = [0.0, 0.05].map(|beam| point(&Bloom::of(1.0, beam, frame).expect("grids"), [128, 128]));
+    let [wide, both] = [0.0, 0.05].map(|beam| point(&bloom_of(1.0, beam, frame).expect("grids"), [128, 128]));
     for x in [170_usize, 185] {
         let [wide, both] = [&wide, &both].map(|field| f64::from(field[128 * 256 + x][0]));
         assert!((both / wide - 1.0).abs() < 0.15, "at {x}: {both} for {wide}");

@@ -29,6 +29,7 @@ fn vk_format(format: PixelFormat) -> vk::Format {
         PixelFormat::Rgba16F => vk::Format::R16G16B16A16_SFLOAT,
         PixelFormat::Rgba32F => vk::Format::R32G32B32A32_SFLOAT,
         PixelFormat::R32F => vk::Format::R32_SFLOAT,
+        PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => vk::Format::A2B10G10R10_UNORM_PACK32,
     }
 }
 
@@ -40,6 +41,7 @@ fn wgpu_format(format: PixelFormat) -> (wgpu::TextureFormat, bool) {
         PixelFormat::Rgba16F => (wgpu::TextureFormat::Rgba16Float, true),
         PixelFormat::Rgba32F => (wgpu::TextureFormat::Rgba32Float, true),
         PixelFormat::R32F => (wgpu::TextureFormat::R32Float, true),
+        PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => (wgpu::TextureFormat::Rgb10a2Unorm, false),
     }
 }
 

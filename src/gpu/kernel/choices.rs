@@ -117,7 +117,8 @@ const MIXED: Only = Only::AnyOf(&[(Choice::POWER_LAW, 1)]);
 const SPINS: Only = Only::AnyOf(&[(Choice::SPINNING, 1)]);
 const DEPTH: Only = Only::AnyOf(&[(Choice::PARTS, 1)]);
 /// The numbers are those of `PixelKind`.
-const EIGHT_BIT: Only = Only::NoneOf(&[(Choice::PIXELS, 1), (Choice::PIXELS, 2)]);
+const EIGHT_BIT: Only = Only::NoneOf(&[(Choice::PIXELS, 1), (Choice::PIXELS, 2), (Choice::PIXELS, 3)]);
+const CODES: Only = Only::NoneOf(&[(Choice::PIXELS, 1), (Choice::PIXELS, 2)]);
 const TONED: Only = Only::NoneOf(&[(Choice::FALSE_COLOUR, 1)]);
 
 /// 1 to N: sets that are not empty, as bits.
@@ -170,11 +171,11 @@ table! {
     REFINES: FLAG, SHADE;
     ALL_EFFECTS: FLAG, SHADE | REFINE | PIXELS, only LIGHT, VIEWS_OF_LIGHT;
     OCCLUDED: FLAG, SHADE | REFINE | PIXELS;
-    PIXELS: [0, 1, 2, FROM_UNIFORM], PACKED, set [(SCREEN, 0), (RGBA32F, 1), (R32F, 2)];
+    PIXELS: [0, 1, 2, 3, FROM_UNIFORM], PACKED, set [(SCREEN, 0), (RGBA32F, 1), (R32F, 2)];
     FALSE_COLOUR: FLAG, FILM, only EIGHT_BIT;
     TONE_MAP: [0, 1, 2, 3, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
     COLOUR_MAP: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
-    GRADE: [0, 1, FROM_UNIFORM], FILM, only EIGHT_BIT, TONED;
+    GRADE: [0, 1, FROM_UNIFORM], FILM, only CODES, TONED;
     LUT: FLAG, FILM, only EIGHT_BIT, TONED;
     // The bloom's cells, in pixels, of frames up to 16384 x 8192.
     STEP: [2, 4, 6, 8], GATHER | GLARE;

@@ -13,7 +13,8 @@ use crate::emit::{
     along, baked, baking, bands, clouds, filaments, glow, half, layers, matter, medium, shape, streaks, turbulence,
     volumes,
 };
-use crate::film::bloom::BEAM_SHARES;
+use crate::film::bloom::{BEAM_SHARES, SPIKE_ELEMENTS, SPIKE_TERMS};
+use crate::film::hdr;
 use crate::film::{self, colour_map, grade, metering, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
@@ -309,6 +310,7 @@ fn all() -> Vec<(&'static str, String)> {
         FROM_UNIFORM: u32 = FROM_UNIFORM;
         PIXELS_FLOAT: u32 = PixelKind::Float;
         PIXELS_R32F: u32 = PixelKind::R32F;
+        PIXELS_HDR: u32 = PixelKind::Hdr;
         TONE_MAP_ACES: u32 = ToneMap::Aces;
         TONE_MAP_AGX: u32 = ToneMap::Agx;
         TONE_MAP_FILMIC: u32 = ToneMap::Filmic;
@@ -329,7 +331,18 @@ fn all() -> Vec<(&'static str, String)> {
         COLOUR_MAP_NONE: u32 = ColourMap::None;
         LUMINANCE: vec3 = colour_map::LUMINANCE;
         BEAM_QUARTERS: i32 = BEAM_SHARES / 4;
+        SPIKE_TERMS: u32 = SPIKE_TERMS;
+        SPIKE_ELEMENTS: u32 = SPIKE_ELEMENTS;
         FORMAT_BGRA8: u32 = PixelFormat::Bgra8Srgb;
+        FORMAT_RGB10A2_PQ: u32 = PixelFormat::Rgb10A2Pq;
+        PQ_M1: f32 = hdr::PQ_M1;
+        PQ_M2: f32 = hdr::PQ_M2;
+        PQ_C1: f32 = hdr::PQ_C1;
+        PQ_C2: f32 = hdr::PQ_C2;
+        PQ_C3: f32 = hdr::PQ_C3;
+        HLG_A: f32 = hdr::HLG_A;
+        HLG_B: f32 = hdr::HLG_B;
+        HLG_C: f32 = hdr::HLG_C;
         FORMAT_RGBA16F: u32 = PixelFormat::Rgba16F;
         FORMAT_RGBA32F: u32 = PixelFormat::Rgba32F;
         FORMAT_R32F: u32 = PixelFormat::R32F;

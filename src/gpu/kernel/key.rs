@@ -34,6 +34,9 @@ pub enum KernelKind {
     GatherBase,
     Upsample,
     Beam,
+    /// Spikes: spreads light along a line, adds it to the finest grid's.
+    SpreadLine,
+    AddLine,
     /// Metering: counts the cells of the finest grid, finds the exposure, smooths the counts.
     Measure,
     Expose,
@@ -154,6 +157,8 @@ impl KernelKind {
             | Self::GatherBase
             | Self::Upsample
             | Self::Beam
+            | Self::SpreadLine
+            | Self::AddLine
             | Self::Measure
             | Self::Expose
             | Self::Smooth
@@ -178,6 +183,8 @@ impl KernelKind {
             Self::Gather | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
+            Self::SpreadLine => "spread_line",
+            Self::AddLine => "add_line",
             Self::Measure => "measure",
             Self::Expose => "expose",
             Self::Smooth => "smooth_blocks",
@@ -208,6 +215,8 @@ impl KernelKind {
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
+            Self::SpreadLine => wgsl::kernel("bloom/spikes"),
+            Self::AddLine => wgsl::kernel("bloom/spiked"),
             Self::Measure => wgsl::kernel("metering/measure"),
             Self::Expose => wgsl::kernel("metering/expose"),
             Self::Smooth => wgsl::kernel("metering/smooth"),
@@ -253,6 +262,10 @@ impl KernelKind {
                 vec![vec![Slot::UniformPart], light, target.slots()]
             }
             Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
+            Self::SpreadLine => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::Write]],
+            Self::AddLine => {
+                vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::Read, Slot::TextureWrite(LIGHT)]]
+            }
             Self::Measure => {
                 let [cells, glare] = [Slot::Texture(LIGHT); 2];
                 vec![vec![Slot::Uniform, cells, glare, Slot::Write, Slot::Write]]

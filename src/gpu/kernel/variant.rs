@@ -194,6 +194,8 @@ pub enum PixelKind {
     /// RGBA16F and RGBA32F.
     Float,
     R32F,
+    /// RGB10A2_PQ and RGB10A2_HLG.
+    Hdr,
 }
 
 /// Where the last kernel of a frame writes pixels.
@@ -254,7 +256,7 @@ impl StoredFormat {
             PixelFormat::Rgba16F => Self::Rgba16F,
             PixelFormat::Rgba32F => Self::Rgba32F,
             PixelFormat::R32F => Self::R32F,
-            PixelFormat::Bgra8Srgb => return None,
+            PixelFormat::Bgra8Srgb | PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => return None,
         })
     }
 }
@@ -272,6 +274,7 @@ impl FilmVariant {
             PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelKind::EightBit,
             PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
             PixelFormat::R32F => PixelKind::R32F,
+            PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => PixelKind::Hdr,
         };
         let (tone_map, colour_map, grade) = (Some(film.tone_map), Some(film.colour_map), Some(film.grade.is_on()));
         let (false_colour, lut) = (*view != View::Light, scene.shown_lut().is_some());

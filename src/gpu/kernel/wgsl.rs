@@ -203,6 +203,8 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
         ("bloom, beam", kernel("bloom/beam")),
+        ("bloom, spikes", kernel("bloom/spikes")),
+        ("bloom, spiked", kernel("bloom/spiked")),
         ("sky map, level", sky_level(false)),
         ("sky map, level from parts", sky_level(true)),
         ("the host's distances", kernel("emit/occluder_rows")),

@@ -6,8 +6,8 @@ use super::run::Image;
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::film::metering::{self, MeterParams};
 use crate::film::{
-    FilmParams, colour_map, develop, develop_through, dither, false_colour, filmic, grade, limited, lut, srgb_encode,
-    tone_map,
+    FilmParams, colour_map, develop, develop_through, dither, false_colour, filmic, grade, hdr, limited, lut,
+    srgb_encode, tone_map,
 };
 use crate::gpu::kernel::choices::FROM_UNIFORM;
 use crate::gpu::kernel::slots::LUT;
@@ -24,6 +24,7 @@ const HEAD: &str = "
 #import film/false_colour
 #import film/filmic
 #import film/grade
+#import film/hdr
 #import film/lut
 #import film/params
 #import metering/params
@@ -35,7 +36,8 @@ fn enter_film() {
     film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u), word(8u), in1(9u),
         in1(10u), in1(11u), in2(12u), in1(14u), in1(15u), mat3x3<f32>(in3(16u), in3(20u), in3(24u)), in1(28u),
         in1(29u), word(30u), word(31u), in4(32u), in4(36u), in4(40u),
-        in3(44u), word(47u), in3(48u), in1(51u));
+        in3(44u), word(47u), in3(48u), in1(51u), in4(52u), in4(56u), in4(60u), in1(64u), in1(65u), in1(66u), in1(67u),
+        in1(68u), 0u, 0u, 0u);
 }
 fn enter_meter() {
     let one = vec2<u32>(1u);
@@ -50,7 +52,9 @@ fn out_bytes(words: vec4<u32>, count: u32) {
 ";
 
 /// Words of `FilmParams`, behind which light comes.
-const LIGHT: usize = 52;
+const LIGHT: usize = 72;
+/// Powers of 79 make much of the rounding of logarithms.
+const HALF_A_CODE: f64 = 0.5;
 
 fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
     let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx, ToneMap::Filmic][i.random.below(4) as usize];
@@ -78,6 +82,8 @@ fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
         exposure_ev: i.random.even(-2.0, 2.0),
         grade: if on { grade } else { Grade::default() },
         filmic,
+        paper_white: i.random.log(10.0, 1000.0),
+        peak: i.random.log(100.0, 10000.0),
         lut_strength: if i.random.below(2) == 0 { 1.0 } else { i.random.even(0.0, 1.0) },
         ..Film::plain()
     };
@@ -177,7 +183,7 @@ pub fn group() -> Group {
     let any = f64::from(FROM_UNIFORM);
     let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any), ("GRADE", any)];
     let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
-    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(52u), word(56u), word(57u)), pixel_words());";
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(72u), word(76u), word(77u)), pixel_words());";
     let twins = vec![
         twin(
             film,
@@ -216,7 +222,7 @@ pub fn group() -> Group {
         twin(
             "film/lut",
             "through_lut lut_node",
-            "enter_film(); out3(through_lut(in3(52u)));",
+            "enter_film(); out3(through_lut(in3(72u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 (0..3).for_each(|_| {
@@ -226,6 +232,47 @@ pub fn group() -> Group {
             |i, o| put3(o, lut::through_lut(&params(i).lut, table().nodes(), [0, 1, 2].map(|k| i.f(LIGHT + k)))),
             ROUNDING,
         ),
+        twin(
+            "film/hdr",
+            "pq_codes pq_encode pq_decode rolled_off display_light",
+            "enter_film(); out3(1023.0 * pq_codes(in3(72u)));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgb10A2Pq);
+                rgb(i);
+            },
+            |i, o| put3(o, hdr::pq_codes(&params(i).hdr, [0, 1, 2].map(|k| i.f(LIGHT + k))).map(|code| 1023.0 * code)),
+            HALF_A_CODE,
+        ),
+        twin(
+            "film/hdr",
+            "hlg_codes hlg_encode",
+            "enter_film(); out3(1023.0 * hlg_codes(in3(72u)));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgb10A2Hlg);
+                rgb(i);
+            },
+            |i, o| put3(o, hdr::hlg_codes(&params(i).hdr, [0, 1, 2].map(|k| i.f(LIGHT + k))).map(|code| 1023.0 * code)),
+            HALF_A_CODE,
+        ),
+        twin(
+            film,
+            "develop_10bit is_hdr",
+            "enter_film(); let word_ = develop(in4(72u), word(76u), word(77u)).x;
+            for (var k = 0u; k < 32u; k += 10u) { out1(f32((word_ >> k) & 1023u)); }",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgb10A2Pq);
+                push_light(i);
+            },
+            |i, o| {
+                let light = [0, 1, 2, 3].map(|k| i.f(LIGHT + k));
+                let bytes = develop(&params(i), light, i.word(LIGHT + 4), i.word(LIGHT + 5));
+                let word = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+                o.values.extend([0, 10, 20, 30].map(|k| (f64::from(word >> k & 1023), 1.0)));
+            },
+            1.0,
+        )
+        .with(&[("PIXELS", any), ("GRADE", any)])
+        .exactly(),
         twin(
             film,
             "develop is_rgba32f",
@@ -268,7 +315,7 @@ pub fn group() -> Group {
         twin(
             encode,
             "limited is_nan",
-            "out3(limited(in3(52u), 100.0));",
+            "out3(limited(in3(72u), 100.0));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 push_light(i);
@@ -294,7 +341,7 @@ pub fn group() -> Group {
         twin(
             "film/filmic",
             "filmic log_rest",
-            "enter_film(); out3(filmic(in3(52u)));",
+            "enter_film(); out3(filmic(in3(72u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -306,7 +353,7 @@ pub fn group() -> Group {
         twin(
             "film/grade",
             "graded grain_noise grain_cell hash",
-            "enter_film(); out3(graded(in3(52u), word(55u), word(56u)));",
+            "enter_film(); out3(graded(in3(72u), word(75u), word(76u)));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 rgb(i);
@@ -346,7 +393,7 @@ pub fn group() -> Group {
         twin(
             colours,
             "false_colour scaled sequential diverging lab_encoded",
-            "enter_film(); out3(false_colour(in1(52u)));",
+            "enter_film(); out3(false_colour(in1(72u)));",
             push_value,
             |i, o| {
                 let film = params(i);

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, DVec4};
 use std::f64::consts::TAU;
 
 /// The most words that an item may have of inputs, and of outputs.
-pub const INPUTS: usize = 64;
+pub const INPUTS: usize = 96;
 pub const OUTPUTS: usize = 40;
 
 /// splitmix64 (Steele, Lea & Flood 2014).

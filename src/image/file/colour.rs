@@ -5,16 +5,12 @@
 use super::loaded::{linear_codes, srgb_to_linear};
 use super::support::reserve;
 use crate::error::Result;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 /// Luminance of diffuse white in pictures of absolute luminance, cd/m^2: ITU-R BT.2408, section 2.
 const REFERENCE_WHITE: f64 = 203.0;
 /// The scene light of HLG that BT.2408 gives diffuse white, a signal of 0.75: ITU-R BT.2100, table 5.
 const HLG_WHITE: f64 = 0.264_96;
-/// Chromaticities that differ from those of Rec. 709 by less in each number are taken for them: files round them.
-const SAME_PRIMARIES: f64 = 0.002;
-/// Numbers of a matrix at most. Real primaries have fewer; those of CIE XYZ have 3.3.
-const MAX_FACTOR: f64 = 64.0;
 /// The brightest light of a code: the largest half float.
 const MAX_LIGHT: f64 = 65504.0;
 /// Codes of curves that have a table: those of 16 bits.
@@ -188,66 +184,4 @@ impl Matrix {
             if light < 0.0 { 0.0 } else { light }
         })
     }
-}
-
-/// Places of red, green, blue and white in the CIE 1931 diagram, x and y.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Primaries(pub [[f64; 2]; 4]);
-
-const D65: [f64; 2] = [0.3127, 0.329];
-
-impl Primaries {
-    pub const REC709: Self = Self([[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65]);
-
-    /// Light of these primaries to light of Rec. 709; white stays white. `None`: they are the same. Errors: `()` for
-    /// places that no three lights and their white have.
-    pub fn to_rec709(self) -> std::result::Result<Option<DMat3>, ()> {
-        let pairs = self.0.as_flattened().iter().zip(Self::REC709.0.as_flattened());
-        if pairs.into_iter().all(|(a, b)| (a - b).abs() < SAME_PRIMARIES) {
-            return Ok(None);
-        }
-        let to_xyz = self.to_xyz().ok_or(())?;
-        from_xyz(to_xyz, self.white()).map(Some).ok_or(())
-    }
-
-    fn white(self) -> DVec3 {
-        xyz(self.0[3]) / self.0[3][1]
-    }
-
-    /// Columns: red, green and blue, as much of each as makes white, whose Y is 1.
-    fn to_xyz(self) -> Option<DMat3> {
-        let [r, g, b, _] = self.0.map(xyz);
-        let lights = DMat3::from_cols(r, g, b);
-        let shares = lights.inverse() * self.white();
-        let scaled = lights * DMat3::from_diagonal(shares);
-        (lights.determinant().abs() > 1e-6 && shares.min_element() > 0.0 && is_sound(scaled)).then_some(scaled)
-    }
-}
-
-fn xyz([x, y]: [f64; 2]) -> DVec3 {
-    DVec3::new(x, y, 1.0 - x - y)
-}
-
-fn is_sound(matrix: DMat3) -> bool {
-    matrix.to_cols_array().iter().all(|number| number.abs() <= MAX_FACTOR)
-}
-
-/// Lights given in CIE XYZ, by columns, to Rec. 709, whose white takes the place of `white` as Bradford has it (Lam
-/// 1985, as in ICC.1:2022, annex E). `None` where numbers are not finite or too large for colours, and where the three
-/// lights do not span a space.
-pub(super) fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
-    // The answers of three kinds of cones, sharpened, by rows.
-    const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
-    let cones = DMat3::from_cols_array_2d(&BRADFORD).transpose();
-    let (from, to) = (cones * white, cones * Primaries::REC709.white());
-    let adapted = cones.inverse() * DMat3::from_diagonal(to / from) * cones;
-    let rec709 = Primaries::REC709.to_xyz()?.inverse();
-    let matrix = rec709 * adapted * lights;
-    (lights.determinant().abs() > 1e-6 && is_sound(matrix)).then_some(matrix)
-}
-
-/// Light of Rec. 709 as it is when `white`, given in CIE XYZ with a Y of 1, has become the white of Rec. 709: a matrix
-/// by columns. `None` as for `from_xyz`.
-pub fn white_balance(white: [f64; 3]) -> Option<[[f64; 3]; 3]> {
-    from_xyz(Primaries::REC709.to_xyz()?, white.into()).map(|matrix| matrix.to_cols_array_2d())
 }

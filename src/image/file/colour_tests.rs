@@ -4,7 +4,7 @@
 use super::tests::Folder;
 use super::*;
 use crate::error::{ErrorKind, Result};
-use crate::image::{ImageRef, Layout, PixelFormat};
+use crate::image::{ColourSpace, ImageRef, Layout, PixelFormat};
 use ::png::chunk::ChunkType;
 use ::png::{BitDepth, ColorType, Encoder, Info};
 use std::fs::File;
@@ -282,7 +282,7 @@ fn transparent_frames_are_saved_with_the_colours_of_png() {
     let frame: [u8; 24] = [10, 20, 30, 255, 40, 100, 0, 128, 90, 80, 70, 0, 0, 0, 0, 77, 200, 100, 50, 64, 1, 2, 3, 1];
     for format in [PixelFormat::Rgba8Srgb, PixelFormat::Bgra8Srgb] {
         let image = ImageRef::new(Layout::packed(format, 6, 1), &frame).unwrap();
-        save(&image, Alpha::Premultiplied, &path).unwrap();
+        save(&image, Alpha::Premultiplied, ColourSpace::Rec709, &path).unwrap();
         let saved = load(&path).unwrap();
         let saved = saved.pixels.as_bytes();
         let order = if format == PixelFormat::Rgba8Srgb { [0, 1, 2] } else { [2, 1, 0] };
@@ -299,7 +299,7 @@ fn transparent_frames_are_saved_with_the_colours_of_png() {
             }
         }
         // An image of the host's own, as one that was loaded, is saved as it is.
-        save(&image, Alpha::AsInFile, &path).unwrap();
+        save(&image, Alpha::AsInFile, ColourSpace::Rec709, &path).unwrap();
         let saved = load(&path).unwrap();
         assert_eq!(saved.pixels.as_bytes()[4], frame[4 + order[0]]);
     }

@@ -2,12 +2,13 @@
 //! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, one block at a
 //! time is held, and only those are unpacked that reach the picture.
 
-use super::colour::{Matrix, Primaries};
+use super::colour::Matrix;
 use super::exr_channels::{Chosen, choose};
 use super::loaded::{Loaded, Pixels};
 use super::support::{io_error, pixel_count, probe, zeros};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::memory::{MAX_SIDE, PixelFormat};
+use crate::image::primaries::Primaries;
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::block::reader::ChunksReader;
 use ::exr::block::{self, BlockIndex, UncompressedBlock};

@@ -3,7 +3,8 @@
 //! those of sRGB, Display P3, Adobe RGB, ProPhoto and linear pictures. Libraries for colour bring transformations of
 //! 8-bit pixels, or more code than all of bhr's readers of files.
 
-use super::colour::{Colours, Curve, Range, from_xyz};
+use super::colour::{Colours, Curve, Range};
+use crate::image::primaries::from_xyz;
 use glam::{DMat3, DVec3};
 
 /// Most entries of a profile's list; usual ones have 9 to 20.

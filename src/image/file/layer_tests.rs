@@ -4,7 +4,7 @@
 use super::tests::Folder;
 use super::*;
 use crate::error::{ErrorKind, Result};
-use crate::image::{ImageRef, Layout, PixelFormat};
+use crate::image::{ColourSpace, ImageRef, Layout, PixelFormat};
 use ::exr::block;
 use ::exr::block::writer::ChunksWriter;
 use ::exr::compression::Compression;
@@ -167,7 +167,7 @@ fn files_are_saved_as_every_program_reads_them() {
         (PixelFormat::R32F, SampleType::F32, &["B", "G", "R"]),
     ] {
         let image = ImageRef::new(Layout::packed(format, 70, 40), bytemuck::cast_slice(&words)).unwrap();
-        save(&image, Alpha::Premultiplied, &path).unwrap();
+        save(&image, Alpha::Premultiplied, ColourSpace::Rec709, &path).unwrap();
         let meta = MetaData::read_from_file(&path, true).unwrap();
         let [header] = &meta.headers[..] else { panic!("{} parts", meta.headers.len()) };
         assert_eq!(header.compression, Compression::ZIP16);

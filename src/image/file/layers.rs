@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Float images as the named channels of one OpenEXR part, as every program reads them: scan lines from the top down,
-//! ZIP, Rec. 709, and attributes that say how it was made. Blocks are deflated by zlib-rs, which takes a third of the
-//! time of exr's own deflate and makes them no larger. Knows no scenes.
+//! ZIP, their primaries, and attributes that say how it was made. Blocks are deflated by zlib-rs, which takes a third
+//! of the time of exr's own deflate and makes them no larger. Knows no scenes.
 
-use super::colour::Primaries;
 use super::layer::{Attribute, Channels, Effort, Layer, Values};
 use super::ordered::Ordered;
 use super::support::{io_error, probe};
 use crate::error::{Error, Result};
+use crate::image::ColourSpace;
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::exr::block;
 use ::exr::block::BlockIndex;
@@ -79,18 +79,19 @@ pub(super) fn write(
         channels.extend(named.map(|(name, index)| Channel { name, values: Source::Image(image, index) }));
     }
     let Some(Layer { image, .. }) = layers.first() else { return Ok(()) };
-    write_channels(Vec2(image.width() as usize, image.height() as usize), channels, attributes, effort, file)
+    let size = Vec2(image.width() as usize, image.height() as usize);
+    write_channels(size, channels, (attributes, ColourSpace::Rec709), effort, file)
 }
 
 /// Writes an image as R, G, B, and A where it has alpha; a single value becomes grey. Errors: IO; OUT_OF_MEMORY.
-pub(super) fn write_image(image: &ImageRef<'_>, file: impl Write + Seek) -> Result<()> {
+pub(super) fn write_image(image: &ImageRef<'_>, space: ColourSpace, file: impl Write + Seek) -> Result<()> {
     let channels: &[(&str, usize)] = match image.format() {
         PixelFormat::R32F => &[("R", 0), ("G", 0), ("B", 0)],
         _ => &[("R", 0), ("G", 1), ("B", 2), ("A", 3)],
     };
     let channels = channels.iter().map(|(name, index)| Channel { name, values: Source::Image(image, *index) });
     let size = Vec2(image.width() as usize, image.height() as usize);
-    write_channels(size, channels.collect(), &[], Effort::default(), file)
+    write_channels(size, channels.collect(), (&[], space), Effort::default(), file)
 }
 
 /// Writes channels as they were read. Errors: as [`write`]; INVALID_ARGUMENT for a channel with another number of
@@ -107,14 +108,14 @@ pub(super) fn write_values(channels: &Channels, effort: Effort, file: impl Write
         }
     }
     let list = channels.list.iter().map(|(name, values)| Channel { name, values: Source::Values(values, size.0) });
-    write_channels(size, list.collect(), &channels.attributes, effort, file)
+    write_channels(size, list.collect(), (&channels.attributes, ColourSpace::Rec709), effort, file)
 }
 
 /// Writes channels of images of one size. Errors: as [`write`].
 fn write_channels(
     size: Vec2<usize>,
     mut channels: Vec<Channel<'_>>,
-    attributes: &[(String, Attribute)],
+    (attributes, space): (&[(String, Attribute)], ColourSpace),
     effort: Effort,
     file: impl Write + Seek,
 ) -> Result<()> {
@@ -132,7 +133,7 @@ fn write_channels(
         (text(name), value)
     });
     let own = LayerAttributes { software_name: Some(Text::from("bhr")), other: other.collect(), ..Default::default() };
-    let [red, green, blue, white] = Primaries::REC709.0.map(|[x, y]| Vec2(x as f32, y as f32));
+    let [red, green, blue, white] = space.primaries().0.map(|[x, y]| Vec2(x as f32, y as f32));
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
     shared.chromaticities = Some(Chromaticities { red, green, blue, white });
     let header = Header::new(Text::from("image"), size, list.collect())

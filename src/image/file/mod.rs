@@ -34,7 +34,6 @@ mod colour_tests;
 #[cfg(all(test, feature = "exr"))]
 mod layer_tests;
 
-pub use colour::white_balance;
 pub use layer::{Alpha, Attribute, Channels, Effort, Layer, Values};
 #[cfg(feature = "exr")]
 pub use load::load_channels;

@@ -159,6 +159,35 @@ pub(super) fn write(image: &ImageRef<'_>, alpha: Alpha, file: impl Write) -> Res
     writer.finish().map_err(io_error)
 }
 
+/// Writes an image of high dynamic range in 16 bits, with the chunk cICP (PNG, third edition, 11.3.2.6) that says what
+/// its codes mean; without alpha, so that premultiplied light is that over black. Errors: as `write`.
+pub(super) fn write_hdr(image: &ImageRef<'_>, file: impl Write) -> Result<()> {
+    let mut row = zeros::<u8>(6 * image.width() as usize)?;
+    probe(16 * u64::from(image.width()) + (1 << 20))?;
+    let mut encoder = Encoder::new(file, image.width(), image.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Sixteen);
+    encoder.set_compression(Compression::Fast);
+    let mut writer = encoder.write_header().map_err(io_error)?;
+    // ITU-T H.273: primaries of Rec. 2020, the curve, no matrix, full range.
+    let curve = if image.format() == PixelFormat::Rgb10A2Hlg { 18 } else { 16 };
+    writer.write_chunk(::png::chunk::ChunkType(*b"cICP"), &[9, curve, 0, 1]).map_err(io_error)?;
+    let mut stream = writer.stream_writer().map_err(io_error)?;
+    for y in 0..image.height() {
+        for (out, pixel) in row.as_chunks_mut::<6>().0.iter_mut().zip(image.row(y).as_chunks::<4>().0) {
+            let word = u32::from_ne_bytes(*pixel);
+            for (out, low) in out.as_chunks_mut::<2>().0.iter_mut().zip([0, 10, 20]) {
+                // 10 bits, and their first 6 again: so 1023 becomes 65535.
+                let code = word >> low & 1023;
+                *out = ((code << 6 | code >> 4) as u16).to_be_bytes();
+            }
+        }
+        stream.write_all(&row).map_err(io_error)?;
+    }
+    stream.finish().map_err(io_error)?;
+    writer.finish().map_err(io_error)
+}
+
 /// Divides a pixel's light by its alpha, as light of sRGB codes: so the picture over a background in linear light is
 /// that of the premultiplied one. Light beyond white is cut; where alpha is 0, only light that glares is lost.
 fn divide(pixel: &mut [u8; 4]) {

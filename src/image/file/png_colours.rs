@@ -2,10 +2,11 @@
 //! The colours of a PNG: which of its chunks says how its codes are meant, as the standard orders them (Portable
 //! Network Graphics, third edition, section 4.3): cICP, iCCP, sRGB, then gAMA and cHRM. A PNG without any is sRGB.
 
-use super::colour::{Colours, Curve, Primaries, Range};
+use super::colour::{Colours, Curve, Range};
 use super::icc;
 use super::support::io_error;
 use crate::error::{Error, Result};
+use crate::image::primaries::Primaries;
 use ::png::{CodingIndependentCodePoints, Info, ScaledFloat, SourceChromaticities};
 use std::io::{BufRead, Read, Seek, SeekFrom};
 
@@ -154,7 +155,7 @@ fn of_code_points(points: CodingIndependentCodePoints, bits: u32) -> Result<Colo
         5 => Primaries([[0.64, 0.33], [0.29, 0.6], [0.15, 0.06], D65]),
         6 | 7 => Primaries([[0.63, 0.34], [0.31, 0.595], [0.155, 0.07], D65]),
         8 => Primaries([[0.681, 0.319], [0.243, 0.692], [0.145, 0.049], C]),
-        9 => Primaries([[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], D65]),
+        9 => Primaries::REC2020,
         10 => Primaries([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0 / 3.0; 2]]),
         11 => Primaries([[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.314, 0.351]]),
         12 => Primaries([[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], D65]),

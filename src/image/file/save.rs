@@ -5,6 +5,7 @@ use super::layer::{Alpha, Attribute, Effort, Layer};
 use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};
 use crate::error::{Error, Result};
+use crate::image::ColourSpace;
 use crate::image::memory::{ImageRef, PixelFormat};
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -33,21 +34,23 @@ fn kind_for(path: &Path, format: PixelFormat) -> Result<FileKind> {
 fn kinds_of(format: PixelFormat) -> &'static [(&'static str, FileKind)] {
     match format {
         PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => &[("png", FileKind::Png), ("ppm", FileKind::Ppm)],
+        PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg => &[("png", FileKind::Png)],
         PixelFormat::Rgba16F | PixelFormat::Rgba32F | PixelFormat::R32F => &[("exr", FileKind::Exr)],
     }
 }
 
 /// Writes `image`: 8-bit formats to `.png` (premultiplied colours are divided by alpha) or `.ppm` (which has no alpha;
-/// premultiplied colours are those over black), float formats to `.exr`, where premultiplied is what all colours are
-/// (`R32F` as grey). Light is Rec. 709's. The file appears whole, and on the disk, or not at all. A file that is
-/// replaced keeps its mode, and its owner where the process may set it; where `path` is a symbolic link, its target is
-/// written. Errors: UNSUPPORTED for another extension, and for EXR without the cargo feature; IO; OUT_OF_MEMORY.
-pub fn save(image: &ImageRef<'_>, alpha: Alpha, path: &Path) -> Result<()> {
+/// premultiplied colours are those over black), those of high dynamic range to `.png` without alpha, float formats to
+/// `.exr`, where premultiplied is what all colours are (`R32F` as grey) and light is in `space`. The file appears
+/// whole, and on the disk, or not at all. A file that is replaced keeps its mode, and its owner where the process may
+/// set it; where `path` is a symbolic link, its target is written. Errors: UNSUPPORTED for another extension, and for
+/// EXR without the cargo feature; IO; OUT_OF_MEMORY.
+pub fn save(image: &ImageRef<'_>, alpha: Alpha, space: ColourSpace, path: &Path) -> Result<()> {
     let kind = kind_for(path, image.format())?;
     let write = || {
         replace::with(path, |file| {
             let mut file = BufWriter::new(file);
-            encode(image, alpha, kind, &mut file)?;
+            encode(image, (alpha, space), kind, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
         })
     };
@@ -125,13 +128,22 @@ fn encode_layers(
     Err(Error::unsupported(super::support::WITHOUT_EXR))
 }
 
-fn encode(image: &ImageRef<'_>, alpha: Alpha, kind: FileKind, file: &mut BufWriter<std::fs::File>) -> Result<()> {
+fn encode(
+    image: &ImageRef<'_>,
+    (alpha, space): (Alpha, ColourSpace),
+    kind: FileKind,
+    file: &mut BufWriter<std::fs::File>,
+) -> Result<()> {
     match kind {
+        FileKind::Png if image.format().is_hdr() => png::write_hdr(image, file),
         FileKind::Png => png::write(image, alpha, file),
         FileKind::Ppm => pnm::write(image, file),
         #[cfg(feature = "exr")]
-        FileKind::Exr => super::layers::write_image(image, file),
+        FileKind::Exr => super::layers::write_image(image, space, file),
         #[cfg(not(feature = "exr"))]
-        FileKind::Exr => Err(Error::unsupported(super::support::WITHOUT_EXR)),
+        FileKind::Exr => {
+            let _ = space;
+            Err(Error::unsupported(super::support::WITHOUT_EXR))
+        }
     }
 }

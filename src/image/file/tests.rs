@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::error::{ErrorKind, Result};
-use crate::image::{ImageMut, ImageRef, Layout, PixelFormat};
+use crate::image::{ColourSpace, ImageMut, ImageRef, Layout, PixelFormat};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ fn block<T: bytemuck::Pod>(layout: Layout, rows: [&[T]; 2]) -> Vec<u32> {
 }
 
 fn save_block(layout: Layout, words: &[u32], path: &Path) -> Result<()> {
-    save(&ImageRef::new(layout, bytemuck::cast_slice(words)).unwrap(), Alpha::AsInFile, path)
+    save(&ImageRef::new(layout, bytemuck::cast_slice(words)).unwrap(), Alpha::AsInFile, ColourSpace::Rec709, path)
 }
 
 fn layout(format: PixelFormat, row_stride: i64) -> Layout {

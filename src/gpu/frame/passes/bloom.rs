@@ -2,6 +2,7 @@
 //! Bloom on the GPU: the passes that spread a frame's light over its grids. What goes where, and why, is in
 //! src/film/bloom.rs. Knows light, not what makes it.
 
+use super::spikes::SpikeStages;
 use crate::error::{Error, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::device::buffer::uniform_stride;
@@ -25,6 +26,7 @@ pub struct BloomStages {
     sizes: Vec<[u32; 2]>,
     stride: u32,
     beam: Option<BeamStages>,
+    spikes: Option<SpikeStages>,
 }
 
 /// The passes that spread a grid's light by the beam.
@@ -58,7 +60,12 @@ impl BloomBuffers {
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
         let beam = bloom.beam.as_ref().zip(resources.beam.as_ref());
         let beam = beam.map(|(beam, made)| resources.beam_stages(device, kernels, beam.level, made)).transpose()?;
-        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32, beam })
+        let spikes = bloom.spikes.as_ref().zip(resources.spikes.as_ref()).map(|made| {
+            let own = resources.gathered.first().ok_or_else(|| Error::internal("spikes without a grid"))?;
+            SpikeStages::new(device, kernels, made, [own, resources.glare_without_spikes(bloom)?])
+        });
+        let spikes = spikes.transpose()?;
+        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32, beam, spikes })
     }
 }
 
@@ -104,6 +111,7 @@ impl BloomStages {
             stage.dispatch(pass, (index as u32 + 1) * self.stride, *size);
             self.spread_beam(pass, index);
         }
+        self.spikes.iter().for_each(|spikes| spikes.spread(pass));
     }
 
     /// Spreads the light of a grid, which has all of it, if it is the beam's.

@@ -175,6 +175,7 @@ mod tests {
     use super::*;
     use crate::gpu::frame::plan::tiles::Budget;
     use crate::image::PixelFormat;
+    use crate::scene::Film;
 
     fn request([width, height]: [u32; 2]) -> FrameRequest {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
@@ -189,7 +190,7 @@ mod tests {
     #[test]
     fn everything_is_done_once_and_in_order() {
         for frame in [[64, 48], [1000, 700], [5001, 333], [16384, 2000]] {
-            let bloom = Bloom::of(1.0, 0.0, frame).expect("grids");
+            let bloom = Bloom::of(&Film { bloom: 1.0, ..Film::plain() }, frame).expect("grids");
             let plan_of = |request: &FrameRequest, each: u64| {
                 TilePlan::new(Budget::SMALL, request, 400 * each, 2048, 300 * each, 20)
             };

@@ -3,6 +3,7 @@
 //! What goes where, and why, is in src/film/bloom.rs. Knows no kernels.
 
 use super::cached_uniform::CachedUniform;
+use super::spike_buffers::SpikeResources;
 use crate::error::{Error, Result};
 use crate::film::bloom::{BEAM_SHARES, Beam, Bloom, Level, MOST_LEVELS, TAIL};
 use crate::gpu::device::buffer::uniform_stride;
@@ -64,6 +65,7 @@ pub struct BloomResources {
     /// A `LevelUniform` for each grid, `uniform_stride` apart.
     levels: CachedUniform,
     pub beam: Option<BeamResources>,
+    pub spikes: Option<SpikeResources>,
 }
 
 pub struct BeamResources {
@@ -91,6 +93,8 @@ impl BloomResources {
             passes.write(device, &beam_uniforms(device, beam, size))?;
             Ok::<_, Error>(BeamResources { rows: texture("light of a beam", size)?, passes })
         });
+        let cells = bloom.levels.first().map_or([1, 1], |base| base.size);
+        let spikes = bloom.spikes.as_ref().map(|spikes| SpikeResources::new(device, spikes, cells));
         let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
         let filter = wgpu::FilterMode::Linear;
         let sampler = wgpu::SamplerDescriptor { mag_filter: filter, min_filter: filter, ..Default::default() };
@@ -101,20 +105,34 @@ impl BloomResources {
             spread: grids("spread light", but_last)?,
             levels: CachedUniform::new(device, "bloom levels", bytes)?,
             beam: beam.transpose()?,
+            spikes: spikes.transpose()?,
         })
     }
 
     /// Textures of exactly these sizes: how samplers round depends on them, and bytes must not depend on earlier
     /// frames.
-    fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
+    fn serves(&self, device: &Device, bloom: &Bloom, light: [u32; 2]) -> bool {
+        let spikes = match (&self.spikes, &bloom.spikes) {
+            (Some(made), Some(spikes)) => made.serves(device, spikes),
+            (made, spikes) => made.is_none() && spikes.is_none(),
+        };
         let sizes = self.gathered.iter().map(Texture::size);
-        self.light.size() == light
+        spikes
+            && self.light.size() == light
             && sizes.eq(bloom.levels.iter().map(|level| level.size))
             && self.beam.as_ref().map(|beam| beam.rows.size()) == beam_size(bloom)
     }
 
     /// The light that the finest grid spreads.
     fn glare(&self, bloom: &Bloom) -> Result<&Texture> {
+        match (&bloom.spikes, &self.spikes) {
+            (Some(spikes), Some(made)) => made.sum(spikes),
+            _ => self.glare_without_spikes(bloom),
+        }
+    }
+
+    /// The light that the finest grid spreads before any is thrown along lines.
+    pub fn glare_without_spikes(&self, bloom: &Bloom) -> Result<&Texture> {
         let grids = if bloom.levels.len() > 1 { &self.spread } else { &self.gathered };
         grids.first().ok_or_else(|| Error::internal("bloom without a grid"))
     }
@@ -143,7 +161,7 @@ impl BloomBuffers {
 
     /// Makes room for a frame of which `light` pixels are held at once.
     pub fn prepare(&mut self, device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<()> {
-        if !self.resources.as_ref().is_some_and(|resources| resources.serves(bloom, light)) {
+        if !self.resources.as_ref().is_some_and(|resources| resources.serves(device, bloom, light)) {
             // The old ones go first: both together need not fit.
             self.resources = None;
             self.resources = Some(BloomResources::new(device, bloom, light)?);
@@ -176,6 +194,9 @@ impl BloomBuffers {
         if let Some(((beam, size), made)) = bloom.beam.as_ref().zip(beam_size(bloom)).zip(resources.beam.as_mut()) {
             made.passes.write(device, &beam_uniforms(device, beam, size))?;
         }
+        if let Some((spikes, made)) = bloom.spikes.as_ref().zip(resources.spikes.as_mut()) {
+            made.write(device, spikes)?;
+        }
         resources.levels.write(device, &bytes)
     }
 
@@ -184,6 +205,7 @@ impl BloomBuffers {
         if let Some(resources) = &mut self.resources {
             resources.levels.forget();
             resources.beam.iter_mut().for_each(|beam| beam.passes.forget());
+            resources.spikes.iter_mut().for_each(SpikeResources::forget);
         }
     }
 

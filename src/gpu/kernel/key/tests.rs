@@ -48,7 +48,8 @@ pub(super) fn kinds() -> Vec<KernelKind> {
     let others = [PixelTarget::Packed, PixelTarget::Rows, PixelTarget::Light];
     let targets = images.map(PixelTarget::Image).into_iter().chain(others).collect::<Vec<_>>();
     let scattered = |target: &PixelTarget| *target != PixelTarget::Rows;
-    let mut kinds = vec![Pixels, Blocks, Listed, Fill, Rays, Count, Gather, GatherBase, Upsample, Beam];
+    let mut kinds =
+        vec![Pixels, Blocks, Listed, Fill, Rays, Count, Gather, GatherBase, Upsample, Beam, SpreadLine, AddLine];
     kinds.extend([SkyLevel(false), SkyLevel(true), OccluderRows, SchwarzschildEnds, SchwarzschildColumns]);
     kinds.extend([KerrNodes, KerrFlags]);
     for maker in makers {

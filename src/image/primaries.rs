@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Primaries of light: where red, green, blue and white lie, and the matrices from one set to another. Knows no pixels
+//! and no files.
+
+use glam::{DMat3, DVec3};
+
+/// Chromaticities that differ from those of Rec. 709 by less in each number are taken for them: files round them.
+const SAME_PRIMARIES: f64 = 0.002;
+/// Numbers of a matrix at most. Real primaries have fewer; those of CIE XYZ have 3.3.
+const MAX_FACTOR: f64 = 64.0;
+
+/// Places of red, green, blue and white in the CIE 1931 diagram, x and y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Primaries(pub [[f64; 2]; 4]);
+
+const D65: [f64; 2] = [0.3127, 0.329];
+
+impl Primaries {
+    pub const REC709: Self = Self([[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65]);
+    /// ITU-R BT.2020 and BT.2100.
+    pub const REC2020: Self = Self([[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], D65]);
+
+    /// SMPTE EG 432-1, with the white of Rec. 709.
+    pub const P3_D65: Self = Self([[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], D65]);
+    /// ACES's AP1 (S-2014-004).
+    pub const AP1: Self = Self([[0.713, 0.293], [0.165, 0.83], [0.128, 0.044], [0.32168, 0.33767]]);
+
+    /// Rows of the matrix from light of these primaries to light of Rec. 709.
+    pub fn rows_to_rec709(self) -> [[f64; 3]; 3] {
+        self.to_rec709().ok().flatten().unwrap_or(DMat3::IDENTITY).transpose().to_cols_array_2d()
+    }
+
+    /// Rows of the matrix from light of Rec. 709 to light of these primaries; white stays white.
+    pub fn rows_from_rec709(self) -> [[f64; 3]; 3] {
+        let to_rec709 = self.to_rec709().ok().flatten().unwrap_or(DMat3::IDENTITY);
+        to_rec709.inverse().transpose().to_cols_array_2d()
+    }
+
+    /// Light of these primaries to light of Rec. 709; white stays white. `None`: they are the same. Errors: `()` for
+    /// places that no three lights and their white have.
+    pub fn to_rec709(self) -> std::result::Result<Option<DMat3>, ()> {
+        let pairs = self.0.as_flattened().iter().zip(Self::REC709.0.as_flattened());
+        if pairs.into_iter().all(|(a, b)| (a - b).abs() < SAME_PRIMARIES) {
+            return Ok(None);
+        }
+        let to_xyz = self.to_xyz().ok_or(())?;
+        from_xyz(to_xyz, self.white()).map(Some).ok_or(())
+    }
+
+    fn white(self) -> DVec3 {
+        xyz(self.0[3]) / self.0[3][1]
+    }
+
+    /// Columns: red, green and blue, as much of each as makes white, whose Y is 1.
+    fn to_xyz(self) -> Option<DMat3> {
+        let [r, g, b, _] = self.0.map(xyz);
+        let lights = DMat3::from_cols(r, g, b);
+        let shares = lights.inverse() * self.white();
+        let scaled = lights * DMat3::from_diagonal(shares);
+        (lights.determinant().abs() > 1e-6 && shares.min_element() > 0.0 && is_sound(scaled)).then_some(scaled)
+    }
+}
+
+fn xyz([x, y]: [f64; 2]) -> DVec3 {
+    DVec3::new(x, y, 1.0 - x - y)
+}
+
+fn is_sound(matrix: DMat3) -> bool {
+    matrix.to_cols_array().iter().all(|number| number.abs() <= MAX_FACTOR)
+}
+
+/// Lights given in CIE XYZ, by columns, to Rec. 709, whose white takes the place of `white` as Bradford has it (Lam
+/// 1985, as in ICC.1:2022, annex E). `None` where numbers are not finite or too large for colours, and where the three
+/// lights do not span a space.
+pub fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
+    // The answers of three kinds of cones, sharpened, by rows.
+    const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let cones = DMat3::from_cols_array_2d(&BRADFORD).transpose();
+    let (from, to) = (cones * white, cones * Primaries::REC709.white());
+    let adapted = cones.inverse() * DMat3::from_diagonal(to / from) * cones;
+    let rec709 = Primaries::REC709.to_xyz()?.inverse();
+    let matrix = rec709 * adapted * lights;
+    (lights.determinant().abs() > 1e-6 && is_sound(matrix)).then_some(matrix)
+}
+
+/// Light of Rec. 709 as it is when `white`, given in CIE XYZ with a Y of 1, has become the white of Rec. 709: a matrix
+/// by columns. `None` as for `from_xyz`.
+pub fn white_balance(white: [f64; 3]) -> Option<[[f64; 3]; 3]> {
+    from_xyz(Primaries::REC709.to_xyz()?, white.into()).map(|matrix| matrix.to_cols_array_2d())
+}
