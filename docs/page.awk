@@ -39,6 +39,8 @@ fence || /^ *```/ { print; next }
     print $0 (name == "index" ? "" : " {#" name "}")
     next
 }
+# Doxygen shows the tags of code in a title.
+/^#/ { gsub(/`/, "") }
 {
     # Doxygen knows neither bold code nor, between single backticks, code with an apostrophe.
     out = ""
