@@ -84,6 +84,32 @@ BhrStatus create_context_on(BhrBackend backend, BhrContext **out) {
     return bhr_context_create(BHR_ABI_VERSION, &options, out);
 }
 
+BhrStatus create_context_beside(const BhrContext *context, BhrContext **out) {
+    BhrContextOptions options;
+    BhrAdapterInfo    adapter;
+    BHR_INIT(options);
+    BHR_INIT(adapter);
+    BhrStatus status = bhr_context_adapter(context, &adapter);
+    if (status < 0) {
+        return status;
+    }
+    options.backend = adapter.backend;
+    uint32_t count = 0;
+    if (bhr_adapter_count(&count) < 0) {
+        count = 0; /* the first one of this kind will do */
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        BhrAdapterInfo listed;
+        BHR_INIT(listed);
+        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&
+            strcmp(listed.name, adapter.name) == 0) {
+            options.adapter_index = (int32_t)i;
+            break;
+        }
+    }
+    return bhr_context_create(BHR_ABI_VERSION, &options, out);
+}
+
 /* ---- a bar ---- */
 
 #define PROGRESS_AFTER_SECONDS 0.5 /* what is done sooner needs no bar */

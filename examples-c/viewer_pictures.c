@@ -49,33 +49,6 @@ static int free_name(char *path) {
     return 0;
 }
 
-/* A context on the adapter of another one. */
-static BhrStatus open_beside(const BhrContext *context, BhrContext **beside) {
-    BhrContextOptions options;
-    BhrAdapterInfo    adapter;
-    BHR_INIT(options);
-    BHR_INIT(adapter);
-    BhrStatus status = bhr_context_adapter(context, &adapter);
-    if (status < 0) {
-        return status;
-    }
-    options.backend = adapter.backend;
-    uint32_t count = 0;
-    if (bhr_adapter_count(&count) < 0) {
-        count = 0; /* the first one of this kind will do */
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        BhrAdapterInfo listed;
-        BHR_INIT(listed);
-        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&
-            strcmp(listed.name, adapter.name) == 0) {
-            options.adapter_index = (int32_t)i;
-            break;
-        }
-    }
-    return bhr_context_create(BHR_ABI_VERSION, &options, beside);
-}
-
 /* Gives one context the scene of another, as text, and then the values of `scene`: in the text things that move are as
  * they begin. */
 static BhrStatus copy_scene(const BhrContext *from, const Scene *scene, BhrContext *to) {
@@ -99,7 +72,7 @@ int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const
     if (!free_name(picture->path) || !picture_allocate(&picture->image, BHR_FORMAT_RGBA8_SRGB, width, height)) {
         return 0;
     }
-    BhrStatus status = picture->context == NULL ? open_beside(context, &picture->context) : BHR_OK;
+    BhrStatus status = picture->context == NULL ? create_context_beside(context, &picture->context) : BHR_OK;
     if (status >= 0) {
         status = copy_scene(context, scene, picture->context);
     }
