@@ -5,6 +5,7 @@
 #include "scene_options.h"
 #include "viewer.h"
 #include "viewer_input.h"
+#include "viewer_news.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,8 +16,7 @@
 #define MACHINE_STEP (1.0 / 60.0) /* between the frames of --frames */
 #define MOVING_FOR 0.2            /* after a change by hand another one is likely for so long */
 #define RESTING_WAIT 0.25         /* between looks at a picture that rests, or cannot be seen */
-#define TITLE_PERIOD 0.25
-#define NEWS_FOR 4.0 /* of a picture, in the title */
+#define BUSY_WAIT 0.02            /* between looks at frames in the background */
 #define MOST_FAILURES 3 /* frames in a row, before it gives up */
 
 typedef struct Settings {
@@ -81,7 +81,7 @@ static int is_moving(const Viewer *v) {
     if (v->still) {
         return 0;
     }
-    return v->recorder.running || v->fixed_step > 0.0 || v->now - v->changed_at < MOVING_FOR ||
+    return v->recorder.taking || v->fixed_step > 0.0 || v->now - v->changed_at < MOVING_FOR ||
            pilot_is_moving(&v->pilot) ||
            (time_runs(v) && (v->pilot.motion != BHR_MOTION_STATIC || scene_changes_with_time(&v->scene)));
 }
@@ -117,7 +117,7 @@ static void move(Viewer *v) {
     if (v->still || is_complete(v) || (v->fixed_step > 0.0 && v->skipped)) {
         return; /* every step of a machine's run is presented */
     }
-    if (v->fixed_step > 0.0 || v->recorder.running) {
+    if (v->fixed_step > 0.0 || v->recorder.taking) {
         seconds = v->fixed_step > 0.0 ? v->fixed_step : 1.0 / RECORDED_RATE;
     }
     double    proper_time = time_runs(v) ? v->pace * v->scene.mass * seconds : 0.0;
@@ -178,15 +178,6 @@ static void draw(Viewer *v) {
     }
 }
 
-void viewer_apply_for_picture(Viewer *v) {
-    Scene picture = v->scene;
-    governor_choose_for_picture(&v->governor, &picture.quality);
-    BhrStatus status = scene_apply(&picture, v->context);
-    if (status < 0) {
-        report_failure("prepare a picture", status); /* then it is as fine as the window is */
-    }
-}
-
 BhrStatus viewer_load(Viewer *v, const char *path) {
     Scene     scene;
     BhrStatus status = bhr_scene_load_file(v->context, path);
@@ -196,6 +187,7 @@ BhrStatus viewer_load(Viewer *v, const char *path) {
     if (status < 0) {
         return status;
     }
+    recorder_stop(&v->recorder); /* its context has the map and the LUT of the scene before */
     governor_take_resolution(&v->governor, v->context);
     v->scene = v->first = scene;
     pilot_stop(&v->pilot, scene.camera.motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : scene.camera.motion);
@@ -210,31 +202,11 @@ BhrStatus viewer_load(Viewer *v, const char *path) {
 /* Seconds until the display wants the next frame. Some displays, as one without a screen, do not hold frames back: what
  * nobody would see is not rendered. */
 static double spare_time(const Viewer *v) {
-    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->recorder.running || v->presented_at == 0.0) {
+    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->presented_at == 0.0) {
         return 0.0;
     }
     double spare = 0.9 * v->governor.period - (wall_seconds() - v->presented_at);
     return spare > 0.5 * v->governor.period ? spare : 0.0; /* less may be the display's own rhythm: leave it alone */
-}
-
-/* Looks after a picture that is rendered in the background. */
-static void watch_picture(Viewer *v) {
-    switch (picture_poll(&v->picture)) {
-    case PICTURE_NONE:
-        break;
-    case PICTURE_RUNNING:
-        snprintf(v->news, sizeof v->news, "   %s %.0f %%", v->picture.path, 100.0 * v->picture.fraction);
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    case PICTURE_SAVED:
-        snprintf(v->news, sizeof v->news, "   saved %s", v->picture.path);
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    case PICTURE_FAILED:
-        snprintf(v->news, sizeof v->news, "   no picture: see the terminal");
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    }
 }
 
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
@@ -244,7 +216,7 @@ static void handle_events(Viewer *v) {
         glfwWaitEvents();
     } else if (v->skipped || !needs_frame(v)) {
         v->presented_at = 0.0;
-        glfwWaitEventsTimeout(v->picture.job != NULL ? TITLE_PERIOD / 4.0 : RESTING_WAIT);
+        glfwWaitEventsTimeout(viewer_is_busy(v) ? BUSY_WAIT : RESTING_WAIT);
         v->now = wall_seconds(); /* the scene did not move meanwhile */
     } else if (spare > 0.0) {
         glfwWaitEventsTimeout(spare);
@@ -253,45 +225,20 @@ static void handle_events(Viewer *v) {
     }
 }
 
-static void update_title(Viewer *v) {
-    double        elapsed = v->now - v->titled_at;
-    BhrHoleInfo   info;
-    BHR_INIT(info);
-    BhrFrameStats stats;
-    BHR_INIT(stats);
-    if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
-        return;
-    }
-    char title[288], rate[32], gpu[32], scale[32] = "", look[32] = "";
-    snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
-    snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
-    if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
-        snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
-    }
-    if (v->preset != NO_PRESET) {
-        snprintf(look, sizeof look, "   %s, %s", choice_name(PRESETS, v->preset),
-                 choice_name(PRESET_MATTERS, v->preset_matter));
-    }
-    const char *news = v->now < v->news_until ? v->news : "";
-    snprintf(title, sizeof title, "bhr%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", news, rate,
-             gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
-    glfwSetWindowTitle(v->window, title);
-    v->titled_at = v->now;
-    v->frames_untitled = 0;
-}
-
 /* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. */
 static void turn(Viewer *v) {
     move(v);
     if (needs_frame(v)) {
         draw(v);
-        if (v->recorder.running) {
-            viewer_apply_for_picture(v);
-            recorder_add(&v->recorder, v->context);
+        if (v->recorder.taking) {
+            Scene frame = v->scene;
+            governor_choose_for_picture(&v->governor, &frame.quality);
+            recorder_take(&v->recorder, &frame);
         }
     }
-    watch_picture(v);
-    update_title(v);
+    text_window_follow(&v->keys, v->window);
+    viewer_watch(v);
+    viewer_update_title(v, is_moving(v));
 }
 
 /* Until the window is closed, or everything is shown. */
@@ -339,6 +286,13 @@ static void on_refresh(GLFWwindow *window) {
     turn(v);
 }
 
+/* By the window's frame. */
+static void on_close(GLFWwindow *window) {
+    Viewer *v = glfwGetWindowUserPointer(window);
+    glfwSetWindowShouldClose(window, GLFW_FALSE);
+    viewer_quit(v);
+}
+
 /* ---- beginning and end ---- */
 
 static GLFWwindow *open_window(const Settings *s) {
@@ -377,7 +331,7 @@ static void print_what_renders(const BhrContext *context, int32_t backend) {
     if (backend == BHR_BACKEND_AUTO) {
         print_driver_advice(stdout, &adapter, "");
     }
-    printf("H prints the keys, Esc quits\n");
+    printf("H shows the keys, Esc quits\n");
 }
 
 /* A context on an adapter that can present to the window. */
@@ -478,16 +432,16 @@ static int start(Viewer *v, const Settings *s) {
     glfwSetWindowUserPointer(v->window, v);
     glfwSetFramebufferSizeCallback(v->window, on_framebuffer_size);
     glfwSetWindowRefreshCallback(v->window, on_refresh);
+    glfwSetWindowCloseCallback(v->window, on_close);
     input_attach(v);
     return 1;
 }
 
 /* In any order; NULL is fine, except for the window. */
 static void finish(Viewer *v) {
-    if (v->recorder.running) {
-        recorder_stop(&v->recorder);
-    }
+    recorder_cancel(&v->recorder);
     picture_end(&v->picture);
+    text_window_hide(&v->keys);
     bhr_surface_destroy(v->surface);
     bhr_context_destroy(v->context);
     if (v->window != NULL) {

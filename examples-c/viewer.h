@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer.h -- what the viewer's parts share: its one struct, which GLFW's callbacks find through the window's user
- * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes. */
+ * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes, viewer_news.c tells. */
 #ifndef EXAMPLES_VIEWER_H
 #define EXAMPLES_VIEWER_H
 
 #include "glfw_window.h"
 #include "scene.h"
 #include "viewer_camera.h"
+#include "viewer_keys.h"
 #include "viewer_pictures.h"
 #include "viewer_quality.h"
 
@@ -36,6 +37,8 @@ typedef struct Viewer {
     Governor governor;
     Recorder recorder;
     PictureJob picture;
+    TextWindow keys;     /* what keys do */
+    int        quitting; /* it ends when picture and film are saved */
 
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */
@@ -49,7 +52,7 @@ typedef struct Viewer {
     double   changed_at;    /* when the picture was last changed by hand */
     double   presented_at;  /* when the last frame was done; 0: there was a pause since */
     double   titled_at;
-    char     news[PICTURE_NAME + 32]; /* of pictures, in the title */
+    char     news[FOLDER_NAME + PICTURE_NAME + 96]; /* of pictures and films, in the title */
     double   news_until;
     unsigned frames_untitled; /* presented since the title was written */
     uint64_t frames;          /* presented */
@@ -65,8 +68,5 @@ typedef struct Viewer {
 /* Shows the scene of a file, and begins there: what is asked for by keys begins anew. Errors: as the library's; then it
  * shows what it did. */
 BhrStatus viewer_load(Viewer *viewer, const char *path);
-
-/* Readies the context for bhr_render_image: the scene of the window, not coarser than a picture to keep should be. */
-void viewer_apply_for_picture(Viewer *viewer);
 
 #endif

@@ -3,6 +3,7 @@
 #include "viewer_input.h"
 
 #include "matter.h"
+#include "viewer_news.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -104,6 +105,14 @@ static void toggle_effect(Viewer *v, double bit) {
     uint32_t effect = (uint32_t)bit;
     v->scene.effects ^= effect;
     SAY(v, "%s %s", choice_name(names, (int32_t)effect), v->scene.effects & effect ? "on" : "off");
+}
+
+/* By quarters, from what physics says down to nothing, and back to it. */
+static void grade_effect(Viewer *v, double which) {
+    static const char *const names[] = {"Doppler shift", "gravitational redshift", "beaming"};
+    double                  *strength = &v->scene.effect_strengths[(int)which];
+    *strength = *strength > 0.0 ? fmax(ceil(*strength * 4.0 - 1.0) / 4.0, 0.0) : 1.0;
+    SAY(v, "%s at %.0f %%", names[(int)which], 100.0 * *strength);
 }
 
 static void toggle_sky(Viewer *v, double unused) {
@@ -275,7 +284,6 @@ static void save_picture(Viewer *v, double unused) {
     (void)unused;
     if (v->picture.job != NULL) {
         picture_cancel(&v->picture);
-        SAY(v, "picture broken off: %s", v->picture.path);
         v->news_until = 0.0;
     } else if (v->size[0] != 0 && v->size[1] != 0) {
         Scene scene = v->scene;
@@ -285,12 +293,17 @@ static void save_picture(Viewer *v, double unused) {
     }
 }
 
+/* Begins, ends the taking, and breaks off what is still being rendered. */
 static void toggle_recording(Viewer *v, double unused) {
     (void)unused;
-    if (v->recorder.running) {
+    if (v->recorder.taking) {
         recorder_stop(&v->recorder);
+        SAY(v, "recording ends: %u frames; R again breaks off what is not rendered yet", v->recorder.taken);
+    } else if (v->recorder.context != NULL) {
+        recorder_cancel(&v->recorder);
+        v->news_until = 0.0;
     } else if (v->size[0] != 0 && v->size[1] != 0) {
-        recorder_start(&v->recorder, v->size[0], v->size[1]);
+        recorder_start(&v->recorder, v->context, v->size[0], v->size[1]);
     }
 }
 
@@ -308,14 +321,11 @@ static void toggle_full_screen(Viewer *v, double unused) {
     }
 }
 
-static void print_keys(Viewer *v, double unused) {
-    (void)v, (void)unused;
-    input_print_keys();
-}
+static void show_keys(Viewer *v, double unused);
 
 static void quit(Viewer *v, double unused) {
     (void)unused;
-    glfwSetWindowShouldClose(v->window, GLFW_TRUE);
+    viewer_quit(v);
 }
 
 /* ---- the table ---- */
@@ -363,7 +373,7 @@ static const Key KEYS[] = {
     {GLFW_KEY_O, 1, NULL, "make the disk less opaque", change_opacity, -0.1, 0},
     {GLFW_KEY_T, 0, NULL, "make the disk more turbulent", change_turbulence, 0.1, 0},
     {GLFW_KEY_T, 1, NULL, "make the disk less turbulent", change_turbulence, -0.1, 0},
-    {GLFW_KEY_U, 0, NULL, "change the matter: soft disk, torus, halo, jet, as in the beginning", cycle_matter, 0, 0},
+    {GLFW_KEY_U, 0, NULL, "change the matter: disk, torus, halo, jet, as it was", cycle_matter, 0, 0},
     {GLFW_KEY_J, 0, NULL, "show a hot spot in orbit, or leave it out", toggle_hot_spot, 0, 0},
     {GLFW_KEY_K, 0, NULL, "show the stars, or leave them out", toggle_sky, 0, 0},
 
@@ -372,8 +382,11 @@ static const Key KEYS[] = {
     {GLFW_KEY_3, 0, NULL, "switch the beaming", toggle_effect, BHR_EFFECT_BEAMING, 0},
     {GLFW_KEY_4, 0, NULL, "switch the light delay", toggle_effect, BHR_EFFECT_LIGHT_DELAY, 0},
 
-    {GLFW_KEY_V, 0, NULL, "show: light, redshift, order, deflection, steps, metric, optical depth, intensity",
-     cycle_view, 0, 0},
+    {GLFW_KEY_1, 1, NULL, "show less of the Doppler shift, by quarters, then all", grade_effect, 0, 0},
+    {GLFW_KEY_2, 1, NULL, "show less of the gravitational redshift, then all", grade_effect, 1, 0},
+    {GLFW_KEY_3, 1, NULL, "show less of the beaming, then all", grade_effect, 2, 0},
+
+    {GLFW_KEY_V, 0, NULL, "show another quantity: light, redshift, order, deflection ..", cycle_view, 0, 0},
     {GLFW_KEY_P, 0, NULL, "change the projection", cycle_projection, 0, 0},
     {GLFW_KEY_RIGHT_BRACKET, 0, NULL, "widen the field of view", change_fov, 1.1, 0},
     {GLFW_KEY_LEFT_BRACKET, 0, NULL, "narrow the field of view", change_fov, 1 / 1.1, 0},
@@ -390,11 +403,11 @@ static const Key KEYS[] = {
     {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
     {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, 0},
     {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, 0},
-    {GLFW_KEY_R, 0, NULL, "record pictures, and stop", toggle_recording, 0, 0},
+    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, 0},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin again", reset, 0, 0},
-    {GLFW_KEY_H, 0, NULL, "print this", print_keys, 0, 0},
-    {GLFW_KEY_ESCAPE, 0, "Esc", "quit", quit, 0, 0},
+    {GLFW_KEY_H, 0, NULL, "show this, or hide it", show_keys, 0, 0},
+    {GLFW_KEY_ESCAPE, 0, "Esc", "quit, when picture and film are saved; again: without them", quit, 0, 0},
 };
 
 static void key_name(const Key *key, char *out, size_t size) {
@@ -409,11 +422,41 @@ static void key_name(const Key *key, char *out, size_t size) {
     }
 }
 
+#define LINE 128
+
+static void key_line(const Key *key, char out[LINE]) {
+    char name[32];
+    key_name(key, name, sizeof name);
+    snprintf(out, LINE, "%-12s %s", name, key->help);
+}
+
 void input_print_keys(void) {
     for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
-        char name[32];
-        key_name(&KEYS[i], name, sizeof name);
-        printf("  %-12s %s\n", name, KEYS[i].help);
+        char line[LINE];
+        key_line(&KEYS[i], line);
+        printf("  %s\n", line);
+    }
+}
+
+static void attach(Viewer *v, GLFWwindow *window);
+
+/* Over the window; where that cannot be, on the terminal. */
+static void show_keys(Viewer *v, double unused) {
+    static char lines[COUNT_OF(KEYS)][LINE];
+    const char *list[COUNT_OF(KEYS)];
+    (void)unused;
+    if (v->keys.window != NULL) {
+        text_window_hide(&v->keys);
+        return;
+    }
+    for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
+        key_line(&KEYS[i], lines[i]);
+        list[i] = lines[i];
+    }
+    if (text_window_show(&v->keys, v->window, list, COUNT_OF(KEYS))) {
+        attach(v, v->keys.window); /* it may get the keyboard by a click */
+    } else {
+        input_print_keys();
     }
 }
 
@@ -470,6 +513,12 @@ static void on_key(GLFWwindow *window, int code, int scancode, int action, int m
     }
 }
 
+/* The keys alone, of either window. */
+static void attach(Viewer *v, GLFWwindow *window) {
+    glfwSetWindowUserPointer(window, v);
+    glfwSetKeyCallback(window, on_key);
+}
+
 static void on_button(GLFWwindow *window, int button, int action, int mods) {
     Viewer *v = glfwGetWindowUserPointer(window);
     int     pressed = action == GLFW_PRESS;
@@ -515,7 +564,7 @@ static void on_wheel(GLFWwindow *window, double dx, double dy) {
 }
 
 void input_attach(Viewer *v) {
-    glfwSetKeyCallback(v->window, on_key);
+    attach(v, v->window);
     glfwSetMouseButtonCallback(v->window, on_button);
     glfwSetCursorPosCallback(v->window, on_cursor);
     glfwSetScrollCallback(v->window, on_wheel);

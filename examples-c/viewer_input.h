@@ -6,9 +6,10 @@
 
 #include "viewer.h"
 
-/* Hears the window's keys and mouse from now on; the window's user pointer must be the viewer. */
+/* Hears a window's keys and mouse from now on; the window's user pointer must be the viewer. */
 void input_attach(Viewer *viewer);
 
+/* On standard output. */
 void input_print_keys(void);
 
 #endif

@@ -11,6 +11,8 @@
 
 #define MOST_PICTURES 9999
 #define MOST_FILMS 99
+#define MOST_FRAMES 18000u /* of a film, five minutes: their scenes take 48 MB */
+#define FRAMES_ROOM 600u   /* that memory is asked for at once */
 
 static BhrStatus render_and_save(BhrContext *context, const BhrImage *image, const char *path) {
     BhrStatus status = bhr_render_image(context, image);
@@ -49,9 +51,8 @@ static int free_name(char *path) {
     return 0;
 }
 
-/* Gives one context the scene of another, as text, and then the values of `scene`: in the text things that move are as
- * they begin. */
-static BhrStatus copy_scene(const BhrContext *from, const Scene *scene, BhrContext *to) {
+/* Gives one context the scene of another, as text. */
+static BhrStatus copy_text(const BhrContext *from, BhrContext *to) {
     size_t    size = 0;
     BhrStatus status = bhr_scene_save(from, NULL, 0, &size);
     char     *text = status < 0 ? NULL : malloc(size + 1);
@@ -63,7 +64,7 @@ static BhrStatus copy_scene(const BhrContext *from, const Scene *scene, BhrConte
         status = bhr_scene_load(to, text, size);
     }
     free(text);
-    return status < 0 ? status : scene_apply(scene, to);
+    return status;
 }
 
 int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const Scene *scene, uint32_t width,
@@ -74,7 +75,10 @@ int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const
     }
     BhrStatus status = picture->context == NULL ? create_context_beside(context, &picture->context) : BHR_OK;
     if (status >= 0) {
-        status = copy_scene(context, scene, picture->context);
+        status = copy_text(context, picture->context);
+    }
+    if (status >= 0) { /* in the text things that move are as they begin */
+        status = scene_apply(scene, picture->context);
     }
     if (status >= 0) {
         status = bhr_render_image_async(picture->context, &picture->image, &picture->job);
@@ -88,6 +92,13 @@ int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const
         picture->context = NULL;
     }
     return status >= 0;
+}
+
+/* The job first: until it has ended the pixels are its own. */
+static void forget(PictureJob *picture) {
+    bhr_job_destroy(picture->job);
+    picture->job = NULL;
+    free(picture->image.pixels);
 }
 
 PictureEnd picture_poll(PictureJob *picture) {
@@ -107,15 +118,14 @@ PictureEnd picture_poll(PictureJob *picture) {
         printf("picture saved: %s, %u x %u\n", picture->path, (unsigned)picture->image.width,
                (unsigned)picture->image.height);
     }
-    picture_cancel(picture);
+    forget(picture);
     return status < 0 ? PICTURE_FAILED : PICTURE_SAVED;
 }
 
 void picture_cancel(PictureJob *picture) {
     if (picture->job != NULL) {
-        bhr_job_destroy(picture->job);
-        picture->job = NULL;
-        free(picture->image.pixels);
+        printf("picture broken off: %s\n", picture->path);
+        forget(picture);
     }
 }
 
@@ -125,36 +135,129 @@ void picture_end(PictureJob *picture) {
     picture->context = NULL;
 }
 
-int recorder_start(Recorder *recorder, uint32_t width, uint32_t height) {
-    Recorder fresh = {.running = 1, .width = width, .height = height};
+/* A new folder for a film. 1, or 0 after a message. */
+static int make_film_folder(char folder[FOLDER_NAME]) {
     for (int i = 1; i <= MOST_FILMS; i++) {
-        snprintf(fresh.folder, sizeof fresh.folder, "viewer-film-%02d", i);
-        if (make_folder(fresh.folder)) {
-            *recorder = fresh;
-            printf("recording %u x %u at %g frames per second into %s\n", (unsigned)width, (unsigned)height,
-                   RECORDED_RATE, fresh.folder);
+        snprintf(folder, FOLDER_NAME, "viewer-film-%02d", i);
+        if (make_folder(folder)) {
             return 1;
         }
         if (errno != EEXIST) {
             break;
         }
     }
-    fprintf(stderr, "cannot record: no folder %s: %s\n", fresh.folder, strerror(errno));
+    fprintf(stderr, "cannot record: no folder %s: %s\n", folder, strerror(errno));
     return 0;
 }
 
-void recorder_add(Recorder *recorder, BhrContext *context) {
-    char path[FOLDER_NAME + 32];
-    snprintf(path, sizeof path, "%s/frame-%06u.png", recorder->folder, recorder->frames + 1);
-    if (picture_save(context, recorder->width, recorder->height, path)) {
-        recorder->frames++;
-    } else {
-        recorder_stop(recorder);
+/* The end of a film, whatever has become of it. */
+static void close_film(Recorder *recorder) {
+    bhr_job_destroy(recorder->job);
+    bhr_context_destroy(recorder->context);
+    free(recorder->image.pixels);
+    free(recorder->scenes);
+    memset(recorder, 0, sizeof *recorder);
+}
+
+int recorder_start(Recorder *recorder, const BhrContext *context, uint32_t width, uint32_t height) {
+    Recorder  fresh = {.taking = 1, .width = width, .height = height};
+    BhrStatus status = create_context_beside(context, &fresh.context);
+    if (status >= 0) {
+        status = copy_text(context, fresh.context);
+    }
+    if (status < 0) {
+        report_failure("begin a film", status);
+    }
+    if (status < 0 || !picture_allocate(&fresh.image, BHR_FORMAT_RGBA8_SRGB, width, height) ||
+        !make_film_folder(fresh.folder)) {
+        close_film(&fresh);
+        return 0;
+    }
+    recorder_cancel(recorder);
+    *recorder = fresh;
+    printf("recording %u x %u at %g frames per second into %s\n", (unsigned)width, (unsigned)height, RECORDED_RATE,
+           fresh.folder);
+    return 1;
+}
+
+void recorder_take(Recorder *recorder, const Scene *scene) {
+    if (!recorder->taking) {
+        return;
+    }
+    if (recorder->taken == recorder->room) {
+        const unsigned room = recorder->room + FRAMES_ROOM;
+        Scene         *scenes = room <= MOST_FRAMES ? realloc(recorder->scenes, room * sizeof *scenes) : NULL;
+        if (scenes == NULL) {
+            fprintf(stderr, "cannot record more than %u frames\n", recorder->taken);
+            recorder_stop(recorder);
+            return;
+        }
+        recorder->scenes = scenes;
+        recorder->room = room;
+    }
+    recorder->scenes[recorder->taken++] = *scene;
+}
+
+void recorder_stop(Recorder *recorder) { recorder->taking = 0; }
+
+/* Says how many frames there are, and ends the film. */
+static void tell_film(Recorder *recorder) {
+    printf("recorded %u frames in %s", recorder->saved, recorder->folder);
+    if (recorder->saved < recorder->taken) {
+        printf(", of %u: broken off", recorder->taken);
+    }
+    printf("; a film of them: ffmpeg -framerate %g -i %s/frame-%%06d.png film.mp4\n", RECORDED_RATE, recorder->folder);
+    close_film(recorder);
+}
+
+void recorder_cancel(Recorder *recorder) {
+    if (recorder->context != NULL) {
+        tell_film(recorder);
     }
 }
 
-void recorder_stop(Recorder *recorder) {
-    recorder->running = 0;
-    printf("recorded %u frames in %s; a film of them: ffmpeg -framerate %g -i %s/frame-%%06d.png film.mp4\n",
-           recorder->frames, recorder->folder, RECORDED_RATE, recorder->folder);
+/* Begins the next frame, where there is one. */
+static BhrStatus begin_frame(Recorder *recorder) {
+    if (recorder->saved == recorder->taken) {
+        return BHR_OK;
+    }
+    BhrStatus status = scene_apply(&recorder->scenes[recorder->saved], recorder->context);
+    return status < 0 ? status : bhr_render_image_async(recorder->context, &recorder->image, &recorder->job);
+}
+
+/* Saves the frame that is under way, if it is done: BHR_OK then, and BHR_NOT_READY before. */
+static BhrStatus end_frame(Recorder *recorder) {
+    char      path[FOLDER_NAME + 32];
+    BhrStatus status = bhr_job_wait(recorder->job, 0, NULL);
+    if (status == BHR_NOT_READY) {
+        return status;
+    }
+    snprintf(path, sizeof path, "%s/frame-%06u.png", recorder->folder, recorder->saved + 1);
+    if (status >= 0) {
+        status = bhr_image_save(&recorder->image, path);
+    }
+    bhr_job_destroy(recorder->job);
+    recorder->job = NULL;
+    recorder->saved += status >= 0 ? 1 : 0;
+    return status;
+}
+
+PictureEnd recorder_poll(Recorder *recorder) {
+    if (recorder->context == NULL) {
+        return PICTURE_NONE;
+    }
+    BhrStatus status = recorder->job != NULL ? end_frame(recorder) : BHR_OK;
+    if (status == BHR_OK) {
+        status = begin_frame(recorder);
+    }
+    if (status < 0) {
+        report_failure("render a frame of the film", status);
+        tell_film(recorder);
+        return PICTURE_FAILED;
+    }
+    if (recorder->taking || recorder->job != NULL) {
+        return PICTURE_RUNNING;
+    }
+    tell_film(recorder);
+    return PICTURE_SAVED;
 }
