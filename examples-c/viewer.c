@@ -121,58 +121,61 @@ static void move(Viewer *v) {
         seconds = v->fixed_step > 0.0 ? v->fixed_step : 1.0 / RECORDED_RATE;
     }
     double    proper_time = time_runs(v) ? v->pace * v->scene.mass * seconds : 0.0;
-    BhrStatus status = pilot_step(&v->pilot, &v->scene, v->context, seconds, proper_time);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
+    if (status >= 0) {
+        status = pilot_step(&v->pilot, &v->scene, v->tester, seconds, proper_time);
+    }
     if (status < 0) {
         report_failure("move the camera", status);
         go_back(v);
     }
 }
 
-/* The cost of a presented frame: the governor and the title want to know. */
-static void account(Viewer *v, int moving) {
-    BhrFrameStats stats;
-    BHR_INIT(stats);
-    double        now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
-    BhrStatus     status = bhr_frame_stats(v->context, &stats);
-    governor_hear(&v->governor, moving, seconds, status >= 0 ? (double)stats.gpu_ns * 1e-9 : 0.0);
+/* The cost of a presented frame: the governor wants to know. */
+static void account(Viewer *v) {
+    double now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
+    governor_hear(&v->governor, v->frame_moves, seconds, (double)v->frame.stats.gpu_ns * 1e-9);
     v->presented_at = now;
-    v->good = v->scene;
+    v->good = v->frame_scene;
     v->failures = 0;
     v->frames++;
     v->frames_untitled++;
+    if (v->recorder.taking) {
+        Scene scene = v->frame_scene;
+        governor_choose_for_picture(&v->governor, &scene.quality);
+        recorder_take(&v->recorder, &scene);
+    }
 }
 
-/* Renders and presents the scene, and deals with every status that can come of it. */
-static void draw(Viewer *v) {
-    const int moving = is_moving(v);
-    Scene     shown = v->scene;
-    if (moving || v->dirty) {
+/* Begins to render and to present the scene. */
+static void begin_frame(Viewer *v) {
+    Scene shown = v->frame_scene = v->scene;
+    v->frame_moves = is_moving(v);
+    if (v->frame_moves || v->dirty) {
         governor_restart(&v->governor);
     }
     v->dirty = 0;
-    governor_choose(&v->governor, moving, &shown.quality);
-    BhrStatus status = scene_apply(&shown, v->context);
-    if (status >= 0) {
-        status = bhr_render_surface(v->context, v->surface);
-    }
-    v->skipped = status == BHR_FRAME_SKIPPED;
-    switch (status) {
+    governor_choose(&v->governor, v->frame_moves, &shown.quality);
+    frame_thread_begin(&v->frame, v->context, v->surface, &shown);
+}
+
+/* Deals with every status that can come of a frame. */
+static void end_frame(Viewer *v) {
+    v->skipped = v->frame.status == BHR_FRAME_SKIPPED;
+    switch (v->frame.status) {
     case BHR_OK:
-        account(v, moving);
+        account(v);
         break;
     case BHR_FRAME_SKIPPED:
         v->dirty = 1;
         break;
     case BHR_ERROR_DEVICE_LOST:
-        report_failure("render the frame", status);
         v->broken |= ++v->failures >= MOST_FAILURES || !recover(v);
         break;
     case BHR_ERROR_SURFACE_LOST:
-        report_failure("render the frame", status);
         v->broken |= ++v->failures >= MOST_FAILURES || !reopen_surface(v);
         break;
     default: /* what was set cannot be, or not here: the last picture could */
-        report_failure("render the frame", status);
         go_back(v);
         break;
     }
@@ -212,8 +215,10 @@ static double spare_time(const Viewer *v) {
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
 static void handle_events(Viewer *v) {
     const double spare = spare_time(v);
-    if (!is_visible(v)) {
-        glfwWaitEvents();
+    if (v->frame.busy) {
+        glfwWaitEventsTimeout(BUSY_WAIT); /* its end is an event, too */
+    } else if (!is_visible(v)) {
+        glfwWaitEventsTimeout(RESTING_WAIT);
     } else if (v->skipped || !needs_frame(v)) {
         v->presented_at = 0.0;
         glfwWaitEventsTimeout(viewer_is_busy(v) ? BUSY_WAIT : RESTING_WAIT);
@@ -225,20 +230,42 @@ static void handle_events(Viewer *v) {
     }
 }
 
-/* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. */
+/* The window has another size since the last frame. */
+static void follow_size(Viewer *v) {
+    v->resized = 0;
+    BhrStatus status = bhr_surface_resize(v->surface, v->size[0], v->size[1]);
+    if (status < 0) {
+        report_failure("follow the window's size", status); /* the next frame says whether that matters */
+    }
+}
+
+/* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. Before
+ * the next frame there is a turn without one, so that the loop can wait for the display. */
 static void turn(Viewer *v) {
-    move(v);
-    if (needs_frame(v)) {
-        draw(v);
-        if (v->recorder.taking) {
-            Scene frame = v->scene;
-            governor_choose_for_picture(&v->governor, &frame.quality);
-            recorder_take(&v->recorder, &frame);
+    if (v->frame.busy) {
+        if (frame_thread_take(&v->frame, 0)) {
+            end_frame(v);
+        }
+    } else {
+        input_act_late(v);
+        if (v->resized) {
+            follow_size(v);
+        }
+        move(v);
+        if (needs_frame(v)) {
+            begin_frame(v);
         }
     }
     text_window_follow(&v->keys, v->window);
     viewer_watch(v);
     viewer_update_title(v, is_moving(v));
+}
+
+/* The context is the caller's again. */
+static void wait_for_frame(Viewer *v) {
+    if (frame_thread_take(&v->frame, 1)) {
+        end_frame(v);
+    }
 }
 
 /* Until the window is closed, or everything is shown. */
@@ -248,6 +275,10 @@ static void show(Viewer *v) {
         handle_events(v);
         turn(v);
     }
+    if (glfwWindowShouldClose(v->window)) {
+        glfwHideWindow(v->window); /* who closed it need not see the end of a frame that takes long */
+    }
+    wait_for_frame(v);
 }
 
 /* The last picture stays, as it is: whoever tests the window can compare. */
@@ -272,11 +303,7 @@ static void on_framebuffer_size(GLFWwindow *window, int width, int height) {
     v->size[0] = (uint32_t)width;
     v->size[1] = (uint32_t)height;
     v->changed_at = v->now;
-    v->dirty = 1;
-    BhrStatus status = bhr_surface_resize(v->surface, v->size[0], v->size[1]);
-    if (status < 0) {
-        report_failure("follow the window's size", status); /* the next frame says whether that matters */
-    }
+    v->dirty = v->resized = 1;
 }
 
 /* The system wants the contents again, as while an edge is dragged: GLFW's poll does not return then. */
@@ -346,6 +373,9 @@ static int open_context(Viewer *v, const Settings *s) {
         options.log_fn = s->verbose || s->validation ? log_to_stderr : NULL;
         options.log_level = s->verbose ? BHR_LOG_INFO : BHR_LOG_WARN;
         status = bhr_context_create(BHR_ABI_VERSION, &options, &v->context);
+    }
+    if (status >= 0) {
+        status = create_context_on(BHR_BACKEND_CPU, &v->tester);
     }
     if (status < 0) {
         report_failure("create a context", status);
@@ -426,7 +456,8 @@ static int start(Viewer *v, const Settings *s) {
     glfwGetFramebufferSize(v->window, &width, &height);
     v->size[0] = (uint32_t)width;
     v->size[1] = (uint32_t)height;
-    if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v)) {
+    if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v) ||
+        !frame_thread_start(&v->frame, glfwPostEmptyEvent)) {
         return 0;
     }
     glfwSetWindowUserPointer(v->window, v);
@@ -439,11 +470,13 @@ static int start(Viewer *v, const Settings *s) {
 
 /* In any order; NULL is fine, except for the window. */
 static void finish(Viewer *v) {
+    frame_thread_end(&v->frame);
     recorder_cancel(&v->recorder);
     picture_end(&v->picture);
     text_window_hide(&v->keys);
     bhr_surface_destroy(v->surface);
     bhr_context_destroy(v->context);
+    bhr_context_destroy(v->tester);
     if (v->window != NULL) {
         glfwDestroyWindow(v->window);
     }

@@ -7,11 +7,13 @@
 #include "glfw_window.h"
 #include "scene.h"
 #include "viewer_camera.h"
+#include "viewer_frame.h"
 #include "viewer_keys.h"
 #include "viewer_pictures.h"
 #include "viewer_quality.h"
 
 #define SAID 96
+#define MOST_LATE 8
 #define SAVED_SCENE "viewer-scene.toml"
 #define FIRST_PACE 3.0 /* M per second: the disk's inner edge turns in half a minute */
 
@@ -24,6 +26,7 @@ typedef struct Mouse {
 typedef struct Viewer {
     GLFWwindow *window;
     BhrContext *context;
+    BhrContext *tester; /* renders nothing: changes are tried on it, and it answers while a frame is rendered */
     BhrSurface *surface;
     BhrPresentMode present;
     uint32_t    size[2]; /* of the framebuffer, in pixels: larger than the window on a high-density display */
@@ -31,6 +34,11 @@ typedef struct Viewer {
     Scene    first;      /* for going back to the beginning */
     Scene    scene;      /* what the next frame shows */
     Pilot    pilot;
+    FrameThread frame;
+    Scene    frame_scene; /* that the frame in work, or the last one, was begun for */
+    int      frame_moves; /* it is one of a moving picture */
+    int      resized;     /* the surface does not know yet */
+    int      late[MOST_LATE], late_count; /* keys that wait for the frame's end, by their place in the table */
     Scene    good;       /* what the last presented frame showed: to go back to when a frame fails */
     double   pace;       /* M of the camera's proper time that go by in a second; < 0: backwards */
     int      paused;

@@ -130,7 +130,7 @@ static void cycle_motion(Viewer *v, double unused) {
     BhrHoleInfo info;
     BHR_INIT(info);
     (void)unused;
-    if (bhr_hole_info(v->context, &info) >= 0 && info.camera_radius <= info.horizon_radius) {
+    if (bhr_hole_info(v->tester, &info) >= 0 && info.camera_radius <= info.horizon_radius) {
         SAY(v, "inside the horizon every observer falls");
         return;
     }
@@ -150,7 +150,7 @@ static void toggle_flight(Viewer *v, double unused) {
     SAY(v, v->pilot.flying ? "free flight: W A S D Q E, Shift for speed, right drag to look" : "about the hole again");
     BhrHoleInfo info;
     BHR_INIT(info);
-    if (v->pilot.flying && bhr_hole_info(v->context, &info) >= 0 && info.camera_radius > info.horizon_radius) {
+    if (v->pilot.flying && bhr_hole_info(v->tester, &info) >= 0 && info.camera_radius > info.horizon_radius) {
         v->pilot.motion = BHR_MOTION_STATIC;
     }
 }
@@ -337,8 +337,11 @@ typedef struct Key {
     const char *help;  /* also what could not be done when bhr refuses the change */
     void (*act)(Viewer *, double argument);
     double argument;
-    int    held; /* acts with -argument when the key is let go */
+    int    kind; /* HELD, LATE or 0 */
 } Key;
+
+#define HELD 1 /* acts with -argument when the key is let go */
+#define LATE 2 /* needs the context: acts when no frame is rendered */
 
 static const Key KEYS[] = {
     {0, 0, "left drag", "go about the hole", NULL, 0, 0},
@@ -346,13 +349,13 @@ static const Key KEYS[] = {
     {0, 0, "wheel", "go nearer, or away", NULL, 0, 0},
     {GLFW_KEY_C, 0, NULL, "look at the hole", centre_hole, 0, 0},
     {GLFW_KEY_F, 0, NULL, "fly freely, and back", toggle_flight, 0, 0},
-    {GLFW_KEY_W, 0, NULL, "fly forward", thrust_forward, 1, 1},
-    {GLFW_KEY_S, 0, NULL, "fly backward", thrust_forward, -1, 1},
-    {GLFW_KEY_A, 0, NULL, "fly to the left", thrust_right, -1, 1},
-    {GLFW_KEY_D, 0, NULL, "fly to the right", thrust_right, 1, 1},
-    {GLFW_KEY_Q, 0, NULL, "fly down", thrust_up, -1, 1},
-    {GLFW_KEY_E, 0, NULL, "fly up", thrust_up, 1, 1},
-    {GLFW_KEY_LEFT_SHIFT, 0, "Shift", "fly four times as fast", thrust_more, 1, 1},
+    {GLFW_KEY_W, 0, NULL, "fly forward", thrust_forward, 1, HELD},
+    {GLFW_KEY_S, 0, NULL, "fly backward", thrust_forward, -1, HELD},
+    {GLFW_KEY_A, 0, NULL, "fly to the left", thrust_right, -1, HELD},
+    {GLFW_KEY_D, 0, NULL, "fly to the right", thrust_right, 1, HELD},
+    {GLFW_KEY_Q, 0, NULL, "fly down", thrust_up, -1, HELD},
+    {GLFW_KEY_E, 0, NULL, "fly up", thrust_up, 1, HELD},
+    {GLFW_KEY_LEFT_SHIFT, 0, "Shift", "fly four times as fast", thrust_more, 1, HELD},
     {GLFW_KEY_N, 0, NULL, "move the camera as: static, free fall (into the hole), orbit", cycle_motion, 0, 0},
 
     {GLFW_KEY_SPACE, 0, "Space", "stop time, and let it go on", toggle_pause, 0, 0},
@@ -393,17 +396,17 @@ static const Key KEYS[] = {
     {GLFW_KEY_UP, 0, "Up", "expose more", change_exposure, 0.25, 0},
     {GLFW_KEY_DOWN, 0, "Down", "expose less", change_exposure, -0.25, 0},
     {GLFW_KEY_G, 0, NULL, "change the tone map", cycle_tone_map, 0, 0},
-    {GLFW_KEY_Y, 0, NULL, "change the look: cinematic, physical, observatory, teaching", cycle_preset, 0, 0},
+    {GLFW_KEY_Y, 0, NULL, "change the look: cinematic, physical, observatory, teaching", cycle_preset, 0, LATE},
 
     {GLFW_KEY_L, 0, NULL, "let the quality follow the display's rate, or not", toggle_adaptive, 0, 0},
     {GLFW_KEY_B, 0, NULL, "take more samples a pixel", change_samples, 2, 0},
     {GLFW_KEY_B, 1, NULL, "take fewer samples a pixel", change_samples, 0.5, 0},
     {GLFW_KEY_I, 0, NULL, "change the method of integration", cycle_method, 0, 0},
 
-    {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
-    {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, 0},
-    {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, 0},
-    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, 0},
+    {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, LATE},
+    {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, LATE},
+    {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, LATE},
+    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, LATE},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin again", reset, 0, 0},
     {GLFW_KEY_H, 0, NULL, "show this, or hide it", show_keys, 0, 0},
@@ -465,32 +468,32 @@ static void show_keys(Viewer *v, double unused) {
 static const Key *find_key(int code, int mods) {
     for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
         if (KEYS[i].act != NULL && KEYS[i].key == code &&
-            (KEYS[i].held || KEYS[i].shift == ((mods & GLFW_MOD_SHIFT) != 0))) {
+            (KEYS[i].kind == HELD || KEYS[i].shift == ((mods & GLFW_MOD_SHIFT) != 0))) {
             return &KEYS[i];
         }
     }
     return NULL;
 }
 
-/* Every change is tried on the context at once: what bhr refuses is said and taken back, and the viewer goes on. */
-static void act(Viewer *v, const Key *key, double argument) {
+/* Every change is tried at once: what bhr refuses is said and taken back, and the viewer goes on. */
+static void act(Viewer *v, const Key *key) {
     const Scene scene = v->scene;
     const Pilot pilot = v->pilot;
     v->said[0] = '\0';
-    key->act(v, argument);
-    BhrStatus status = scene_apply(&v->scene, v->context);
+    key->act(v, key->argument);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
     if (status < 0) {
         report_failure(key->help, status);
         v->scene = scene;
         v->pilot = pilot;
-        status = scene_apply(&v->scene, v->context);
+        status = scene_apply(&v->scene, v->tester);
         if (status < 0) {
             report_failure("take that back", status); /* a frame will say what is to be done */
         }
     } else if (v->said[0] != '\0') {
         puts(v->said);
     }
-    v->changed_at = v->now;
+    v->changed_at = wall_seconds();
     v->dirty = 1;
 }
 
@@ -501,15 +504,28 @@ static void on_key(GLFWwindow *window, int code, int scancode, int action, int m
     if (key == NULL || v->still) {
         return;
     }
-    if (key->held) {
+    if (key->kind == HELD) {
         if (action != GLFW_REPEAT) {
             key->act(v, action == GLFW_PRESS ? key->argument : -key->argument);
         }
         return;
     }
     /* Ctrl, Alt and Super belong to the desktop. */
-    if (action != GLFW_RELEASE && (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0) {
-        act(v, key, key->argument);
+    if (action == GLFW_RELEASE || (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) {
+        return;
+    }
+    if (key->kind != LATE || (!v->frame.busy && v->late_count == 0)) {
+        act(v, key);
+    } else if (v->late_count < MOST_LATE) {
+        v->late[v->late_count++] = (int)(key - KEYS);
+    }
+}
+
+void input_act_late(Viewer *v) {
+    const int count = v->late_count;
+    v->late_count = 0;
+    for (int i = 0; i < count; i++) {
+        act(v, &KEYS[v->late[i]]);
     }
 }
 

@@ -7,18 +7,20 @@
 #define TITLE_PERIOD 0.25 /* seconds */
 #define NEWS_FOR 4.0      /* seconds that the end of a picture or a film stands in the title */
 
-int viewer_is_busy(const Viewer *v) { return v->picture.job != NULL || v->recorder.context != NULL; }
+int viewer_is_busy(const Viewer *v) {
+    return v->picture.job != NULL || v->recorder.context != NULL || v->late_count > 0;
+}
 
 /* The end of something, in the title for a while. */
 static void tell(Viewer *v, const char *what, const char *name) {
     snprintf(v->news, sizeof v->news, "   %s %s", what, name);
-    v->news_until = v->now + NEWS_FOR;
+    v->news_until = wall_seconds() + NEWS_FOR;
     v->titled_at = 0.0; /* at once */
 }
 
 void viewer_watch(Viewer *v) {
-    char        folder[FOLDER_NAME];
-    PictureEnd  end = picture_poll(&v->picture);
+    char       folder[FOLDER_NAME];
+    PictureEnd end = picture_poll(&v->picture);
     if (end == PICTURE_SAVED) {
         tell(v, "saved", v->picture.path);
     } else if (end == PICTURE_FAILED) {
@@ -47,8 +49,9 @@ void viewer_quit(Viewer *v) {
         recorder_stop(&v->recorder);
         v->quitting = 1;
         v->titled_at = 0.0;
-        printf("ends when %s is saved; Esc again breaks it off\n",
-               v->recorder.context != NULL ? v->recorder.folder : v->picture.path);
+        printf("ends when %s is saved; Esc again breaks it off\n", v->recorder.context != NULL ? v->recorder.folder
+                                                                   : v->picture.job != NULL    ? v->picture.path
+                                                                                               : "the picture");
     }
 }
 
@@ -66,21 +69,20 @@ static void news_of_work(Viewer *v) {
         snprintf(picture, sizeof picture, "   %s %.0f %%", v->picture.path, 100.0 * v->picture.fraction);
     }
     snprintf(v->news, sizeof v->news, "%s%s%s", v->quitting ? "   Esc again ends without" : "", picture, film);
-    v->news_until = v->now + NEWS_FOR;
+    v->news_until = wall_seconds() + NEWS_FOR;
 }
 
 void viewer_update_title(Viewer *v, int moving) {
-    double        elapsed = v->now - v->titled_at;
+    const double  now = wall_seconds(), elapsed = now - v->titled_at;
     BhrHoleInfo   info;
     BHR_INIT(info);
-    BhrFrameStats stats;
-    BHR_INIT(stats);
-    if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
+    if (elapsed < TITLE_PERIOD || v->frames == 0 || scene_apply(&v->scene, v->tester) < 0 || bhr_hole_info(v->tester, &info) < 0) {
         return;
     }
     char title[384], rate[32], gpu[32], scale[32] = "", look[32] = "";
     snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
-    snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
+    const uint64_t gpu_ns = v->frame.stats.gpu_ns;
+    snprintf(gpu, sizeof gpu, gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)gpu_ns * 1e-6);
     if (moving && v->governor.enabled && v->governor.scale < 1.0) {
         snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
     }
@@ -89,10 +91,10 @@ void viewer_update_title(Viewer *v, int moving) {
                  choice_name(PRESET_MATTERS, v->preset_matter));
     }
     news_of_work(v);
-    const char *news = v->now < v->news_until ? v->news : "";
+    const char *news = now < v->news_until ? v->news : "";
     snprintf(title, sizeof title, "bhr%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", news, rate,
              gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
     glfwSetWindowTitle(v->window, title);
-    v->titled_at = v->now;
+    v->titled_at = now;
     v->frames_untitled = 0;
 }
