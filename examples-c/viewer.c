@@ -276,7 +276,7 @@ static void show(Viewer *v) {
         turn(v);
     }
     if (glfwWindowShouldClose(v->window)) {
-        glfwHideWindow(v->window); /* who closed it need not see the end of a frame that takes long */
+        glfwHideWindow(v->window); /* a user who has closed it need not see the end of a long frame */
     }
     wait_for_frame(v);
 }

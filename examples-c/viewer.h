@@ -36,7 +36,7 @@ typedef struct Viewer {
     Pilot    pilot;
     FrameThread frame;
     Scene    frame_scene; /* that the frame in work, or the last one, was begun for */
-    int      frame_moves; /* it is one of a moving picture */
+    int      frame_moves; /* whether it is one of a moving picture */
     int      resized;     /* the surface does not know yet */
     int      late[MOST_LATE], late_count; /* keys that wait for the frame's end, by their place in the table */
     Scene    good;       /* what the last presented frame showed: to go back to when a frame fails */
@@ -45,8 +45,8 @@ typedef struct Viewer {
     Governor governor;
     Recorder recorder;
     PictureJob picture;
-    TextWindow keys;     /* what keys do */
-    int        quitting; /* it ends when picture and film are saved */
+    TextWindow keys;     /* shows what keys do */
+    int        quitting; /* the viewer ends when picture and film are saved */
 
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */

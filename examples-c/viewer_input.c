@@ -457,7 +457,7 @@ static void show_keys(Viewer *v, double unused) {
         list[i] = lines[i];
     }
     if (text_window_show(&v->keys, v->window, list, COUNT_OF(KEYS))) {
-        attach(v, v->keys.window); /* it may get the keyboard by a click */
+        attach(v, v->keys.window); /* a click may give it the keyboard */
     } else {
         input_print_keys();
     }

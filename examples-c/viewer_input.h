@@ -9,7 +9,7 @@
 /* Hears a window's keys and mouse from now on; the window's user pointer must be the viewer. */
 void input_attach(Viewer *viewer);
 
-/* What keys asked for that needs the context: call it while no frame is rendered. */
+/* Does for keys that had to wait for the context. Call it while no frame is rendered. */
 void input_act_late(Viewer *viewer);
 
 /* On standard output. */

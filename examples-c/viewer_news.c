@@ -76,7 +76,8 @@ void viewer_update_title(Viewer *v, int moving) {
     const double  now = wall_seconds(), elapsed = now - v->titled_at;
     BhrHoleInfo   info;
     BHR_INIT(info);
-    if (elapsed < TITLE_PERIOD || v->frames == 0 || scene_apply(&v->scene, v->tester) < 0 || bhr_hole_info(v->tester, &info) < 0) {
+    if (elapsed < TITLE_PERIOD || v->frames == 0 || scene_apply(&v->scene, v->tester) < 0 ||
+        bhr_hole_info(v->tester, &info) < 0) {
         return;
     }
     char title[384], rate[32], gpu[32], scale[32] = "", look[32] = "";

@@ -15,7 +15,8 @@ void viewer_watch(Viewer *viewer);
 /* Ends the viewer; while something is in the making only when it is saved, or when this is asked for again. */
 void viewer_quit(Viewer *viewer);
 
-/* Writes the title, from the first frame on, a few times a second. moving: the picture is, and may be coarser for it. */
+/* Writes the title, from the first frame on, a few times a second. moving: the picture is, and may be coarser for
+ * it. */
 void viewer_update_title(Viewer *viewer, int moving);
 
 #endif

@@ -23,7 +23,7 @@ struct LightCounts {
     double bright() const;
 };
 
-// Of an RGBA8_SRGB picture with packed rows; large ones by every second pixel, or third, each way.
+// Counts an RGBA8_SRGB picture with packed rows; large ones by every second pixel, or third, each way.
 LightCounts count_light(const Pixels &picture);
 
 class LightScope {

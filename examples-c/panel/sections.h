@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-// As ImGui laid it out: `hidden` is how far its content reaches beyond it, across and down; bar: it scrolls down.
+// A section, laid out by ImGui: `hidden` is how far its content reaches beyond it, across and down; bar: there is one
+// that scrolls it down.
 struct SectionReport {
     std::string name;
     ImVec2      at, size, hidden;

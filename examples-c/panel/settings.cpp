@@ -220,8 +220,10 @@ void SettingsPanel::effects(Scene &scene) {
         uint32_t    bit;
         const char *about;
     } rows[] = {
-        {"Doppler shift", "strength##Doppler", BHR_EFFECT_DOPPLER_SHIFT, "the frequency shift by motion colours the light"},
-        {"gravity shift", "strength##gravity", BHR_EFFECT_GRAVITY_SHIFT, "the gravitational redshift colours the light"},
+        {"Doppler shift", "strength##Doppler", BHR_EFFECT_DOPPLER_SHIFT,
+         "the frequency shift by motion colours the light"},
+        {"gravity shift", "strength##gravity", BHR_EFFECT_GRAVITY_SHIFT,
+         "the gravitational redshift colours the light"},
         {"beaming", "strength##beaming", BHR_EFFECT_BEAMING, "the intensity follows g^3 (I_nu), g^4 (all light)"},
         {"light delay", nullptr, BHR_EFFECT_LIGHT_DELAY, "moving matter is seen where it was when its light left"},
     };

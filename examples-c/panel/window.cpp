@@ -21,7 +21,7 @@ std::string glfw_failure(const char *what) {
     return std::string("cannot ") + what + ": " + (reason != nullptr ? reason : "GLFW does not say why");
 }
 
-// What the first screen has room for of the usual size, beside its bars.
+// Makes the usual size no larger than the first screen has room for beside its bars.
 void fit_to_screen(int size[2]) {
     int          x = 0, y = 0, room[2] = {0, 0};
     GLFWmonitor *monitor = glfwGetPrimaryMonitor();
