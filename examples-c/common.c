@@ -84,25 +84,19 @@ BhrStatus create_context_on(BhrBackend backend, BhrContext **out) {
     return bhr_context_create(BHR_ABI_VERSION, &options, out);
 }
 
-BhrStatus create_context_beside(const BhrContext *context, BhrContext **out) {
+BhrStatus create_context_beside(const BhrAdapterInfo *adapter, BhrContext **out) {
     BhrContextOptions options;
-    BhrAdapterInfo    adapter;
+    uint32_t          count = 0;
     BHR_INIT(options);
-    BHR_INIT(adapter);
-    BhrStatus status = bhr_context_adapter(context, &adapter);
-    if (status < 0) {
-        return status;
-    }
-    options.backend = adapter.backend;
-    uint32_t count = 0;
+    options.backend = adapter->backend;
     if (bhr_adapter_count(&count) < 0) {
         count = 0; /* the first one of this kind will do */
     }
     for (uint32_t i = 0; i < count; i++) {
         BhrAdapterInfo listed;
         BHR_INIT(listed);
-        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&
-            strcmp(listed.name, adapter.name) == 0) {
+        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter->backend &&
+            strcmp(listed.name, adapter->name) == 0) {
             options.adapter_index = (int32_t)i;
             break;
         }

@@ -148,7 +148,7 @@ static void account(Viewer *v) {
 }
 
 /* Begins to render and to present the scene. */
-static void begin_frame(Viewer *v) {
+static void start_frame(Viewer *v) {
     Scene shown = v->frame_scene = v->scene;
     v->frame_moves = is_moving(v);
     if (v->frame_moves || v->dirty) {
@@ -156,11 +156,11 @@ static void begin_frame(Viewer *v) {
     }
     v->dirty = 0;
     governor_choose(&v->governor, v->frame_moves, &shown.quality);
-    frame_thread_begin(&v->frame, v->context, v->surface, &shown);
+    frame_begin(&v->frame, v->context, v->surface, &shown);
 }
 
 /* Deals with every status that can come of a frame. */
-static void end_frame(Viewer *v) {
+static void finish_frame(Viewer *v) {
     v->skipped = v->frame.status == BHR_FRAME_SKIPPED;
     switch (v->frame.status) {
     case BHR_OK:
@@ -183,7 +183,10 @@ static void end_frame(Viewer *v) {
 
 BhrStatus viewer_load(Viewer *v, const char *path) {
     Scene     scene;
-    BhrStatus status = bhr_scene_load_file(v->context, path);
+    BhrStatus status = bhr_scene_load_file(v->tester, path);
+    if (status >= 0) {
+        status = bhr_scene_load_file(v->context, path);
+    }
     if (status >= 0) {
         status = scene_read(&scene, v->context);
     }
@@ -243,8 +246,8 @@ static void follow_size(Viewer *v) {
  * the next frame there is a turn without one, so that the loop can wait for the display. */
 static void turn(Viewer *v) {
     if (v->frame.busy) {
-        if (frame_thread_take(&v->frame, 0)) {
-            end_frame(v);
+        if (frame_take(&v->frame, 0)) {
+            finish_frame(v);
         }
     } else {
         input_act_late(v);
@@ -253,7 +256,7 @@ static void turn(Viewer *v) {
         }
         move(v);
         if (needs_frame(v)) {
-            begin_frame(v);
+            start_frame(v);
         }
     }
     text_window_follow(&v->keys, v->window);
@@ -263,8 +266,8 @@ static void turn(Viewer *v) {
 
 /* The context is the caller's again. */
 static void wait_for_frame(Viewer *v) {
-    if (frame_thread_take(&v->frame, 1)) {
-        end_frame(v);
+    if (frame_take(&v->frame, 1)) {
+        finish_frame(v);
     }
 }
 
@@ -346,17 +349,12 @@ static double display_rate(void) {
     return mode != NULL ? mode->refreshRate : 0.0;
 }
 
-static void print_what_renders(const BhrContext *context, int32_t backend) {
-    BhrAdapterInfo adapter;
-    BHR_INIT(adapter);
-    if (bhr_context_adapter(context, &adapter) < 0) {
-        return;
-    }
+static void print_what_renders(const BhrAdapterInfo *adapter, int32_t backend) {
     printf("rendering on ");
-    print_adapter(stdout, &adapter);
+    print_adapter(stdout, adapter);
     putchar('\n');
     if (backend == BHR_BACKEND_AUTO) {
-        print_driver_advice(stdout, &adapter, "");
+        print_driver_advice(stdout, adapter, "");
     }
     printf("H shows the keys, Esc quits\n");
 }
@@ -377,19 +375,16 @@ static int open_context(Viewer *v, const Settings *s) {
     if (status >= 0) {
         status = create_context_on(BHR_BACKEND_CPU, &v->tester);
     }
+    if (status >= 0) {
+        BHR_INIT(v->adapter);
+        status = bhr_context_adapter(v->context, &v->adapter);
+    }
     if (status < 0) {
         report_failure("create a context", status);
         return 0;
     }
-    print_what_renders(v->context, s->backend);
+    print_what_renders(&v->adapter, s->backend);
     return 1;
-}
-
-/* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
-static int is_software(const BhrContext *context) {
-    BhrAdapterInfo adapter;
-    BHR_INIT(adapter);
-    return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
 }
 
 /* The goal of --matter auto: the window, at the display's rate. */
@@ -409,7 +404,9 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     if (scene_input_finish(s->input, v->context, s->options, s->argc, s->argv) != 0) {
         return 0;
     }
-    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
+    /* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
+    const int software = (v->adapter.flags & BHR_ADAPTER_SOFTWARE) != 0;
+    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), software ? 0.25 : 1.0);
     governor_take_resolution(&v->governor, v->context);
     v->scene = s->input->scene;
     const int32_t motion = v->scene.camera.motion; /* the pilot sets the motion */
@@ -417,6 +414,11 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     BhrStatus status = scene_apply(&v->scene, v->context);
     if (status < 0) {
         report_failure("set the scene", status);
+        return 0;
+    }
+    status = scene_copy(v->context, v->tester);
+    if (status < 0) {
+        report_failure("copy the scene", status);
         return 0;
     }
     v->first = v->good = v->scene;
@@ -457,7 +459,7 @@ static int start(Viewer *v, const Settings *s) {
     v->size[0] = (uint32_t)width;
     v->size[1] = (uint32_t)height;
     if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v) ||
-        !frame_thread_start(&v->frame, glfwPostEmptyEvent)) {
+        !frame_start(&v->frame, glfwPostEmptyEvent)) {
         return 0;
     }
     glfwSetWindowUserPointer(v->window, v);
@@ -470,7 +472,7 @@ static int start(Viewer *v, const Settings *s) {
 
 /* In any order; NULL is fine, except for the window. */
 static void finish(Viewer *v) {
-    frame_thread_end(&v->frame);
+    frame_end(&v->frame);
     recorder_cancel(&v->recorder);
     picture_end(&v->picture);
     text_window_hide(&v->keys);

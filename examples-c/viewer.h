@@ -26,7 +26,9 @@ typedef struct Mouse {
 typedef struct Viewer {
     GLFWwindow *window;
     BhrContext *context;
-    BhrContext *tester; /* renders nothing: changes are tried on it, and it answers while a frame is rendered */
+    BhrContext *tester; /* renders nothing: changes are tried on it, and it answers while a frame is rendered; has the
+                           map and the LUT of the other one, too */
+    BhrAdapterInfo adapter; /* that renders */
     BhrSurface *surface;
     BhrPresentMode present;
     uint32_t    size[2]; /* of the framebuffer, in pixels: larger than the window on a high-density display */
@@ -34,7 +36,7 @@ typedef struct Viewer {
     Scene    first;      /* for going back to the beginning */
     Scene    scene;      /* what the next frame shows */
     Pilot    pilot;
-    FrameThread frame;
+    Frame    frame;
     Scene    frame_scene; /* that the frame in work, or the last one, was begun for */
     int      frame_moves; /* whether it is one of a moving picture */
     int      resized;     /* the surface does not know yet */

@@ -251,12 +251,12 @@ static void reset(Viewer *v, double unused) {
     SAY(v, "back to the beginning");
 }
 
-/* Over the one that was saved before. The context may hold a coarser scene, for a frame while it moves. */
+/* Over the one that was saved before. */
 static void save_scene(Viewer *v, double unused) {
     (void)unused;
-    BhrStatus status = scene_apply(&v->scene, v->context);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
     if (status >= 0) {
-        status = bhr_scene_save_file(v->context, SAVED_SCENE);
+        status = bhr_scene_save_file(v->tester, SAVED_SCENE);
     }
     if (status < 0) {
         report_failure("save the scene", status);
@@ -271,7 +271,7 @@ static void load_scene(Viewer *v, double unused) {
     uint32_t  frames = 1;
     BhrStatus status = viewer_load(v, v->scene_path);
     if (status >= 0) {
-        status = bhr_scene_pictures(v->context, NULL, NULL, &frames, NULL);
+        status = bhr_scene_pictures(v->tester, NULL, NULL, &frames, NULL);
     }
     if (status < 0) {
         report_failure("load the scene", status);
@@ -289,7 +289,7 @@ static void save_picture(Viewer *v, double unused) {
         Scene scene = v->scene;
         governor_choose_for_picture(&v->governor, &scene.quality);
         scene.film.auto_adaptation = 1.0; /* the picture's context has shown nothing before */
-        picture_begin_numbered(&v->picture, v->context, &scene, v->size[0], v->size[1]);
+        picture_begin_numbered(&v->picture, &v->adapter, v->tester, &scene, v->size[0], v->size[1]);
     }
 }
 
@@ -303,7 +303,7 @@ static void toggle_recording(Viewer *v, double unused) {
         recorder_cancel(&v->recorder);
         v->news_until = 0.0;
     } else if (v->size[0] != 0 && v->size[1] != 0) {
-        recorder_start(&v->recorder, v->context, v->size[0], v->size[1]);
+        recorder_start(&v->recorder, &v->adapter, v->tester, v->size[0], v->size[1]);
     }
 }
 
@@ -403,10 +403,10 @@ static const Key KEYS[] = {
     {GLFW_KEY_B, 1, NULL, "take fewer samples a pixel", change_samples, 0.5, 0},
     {GLFW_KEY_I, 0, NULL, "change the method of integration", cycle_method, 0, 0},
 
-    {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, LATE},
+    {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
     {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, LATE},
-    {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, LATE},
-    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, LATE},
+    {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, 0},
+    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, 0},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin again", reset, 0, 0},
     {GLFW_KEY_H, 0, NULL, "show this, or hide it", show_keys, 0, 0},

@@ -8,7 +8,7 @@
 #define NEWS_FOR 4.0      /* seconds that the end of a picture or a film stands in the title */
 
 int viewer_is_busy(const Viewer *v) {
-    return v->picture.job != NULL || v->recorder.context != NULL || v->late_count > 0;
+    return v->picture.job != NULL || v->recorder.context != NULL;
 }
 
 /* The end of something, in the title for a while. */
@@ -49,9 +49,8 @@ void viewer_quit(Viewer *v) {
         recorder_stop(&v->recorder);
         v->quitting = 1;
         v->titled_at = 0.0;
-        printf("ends when %s is saved; Esc again breaks it off\n", v->recorder.context != NULL ? v->recorder.folder
-                                                                   : v->picture.job != NULL    ? v->picture.path
-                                                                                               : "the picture");
+        printf("ends when %s is saved; Esc again breaks it off\n",
+               v->recorder.context != NULL ? v->recorder.folder : v->picture.path);
     }
 }
 
@@ -80,7 +79,7 @@ void viewer_update_title(Viewer *v, int moving) {
         bhr_hole_info(v->tester, &info) < 0) {
         return;
     }
-    char title[384], rate[32], gpu[32], scale[32] = "", look[32] = "";
+    char title[400], rate[32], gpu[32], scale[32] = "", look[32] = "";
     snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
     const uint64_t gpu_ns = v->frame.stats.gpu_ns;
     snprintf(gpu, sizeof gpu, gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)gpu_ns * 1e-6);
@@ -92,9 +91,10 @@ void viewer_update_title(Viewer *v, int moving) {
                  choice_name(PRESET_MATTERS, v->preset_matter));
     }
     news_of_work(v);
+    const char *late = v->late_count > 0 ? "   after this frame .." : "";
     const char *news = now < v->news_until ? v->news : "";
-    snprintf(title, sizeof title, "bhr%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", news, rate,
-             gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
+    snprintf(title, sizeof title, "bhr%s%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", late, news,
+             rate, gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
     glfwSetWindowTitle(v->window, title);
     v->titled_at = now;
     v->frames_untitled = 0;

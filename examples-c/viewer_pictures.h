@@ -6,6 +6,7 @@
 #define EXAMPLES_VIEWER_PICTURES_H
 
 #include "scene.h"
+#include "viewer_worker.h"
 
 #define RECORDED_RATE 60.0 /* frames per second of a recording */
 #define FOLDER_NAME 32
@@ -14,10 +15,19 @@
 /* Renders the context's scene and saves it. 1, or 0 after a message. */
 int picture_save(BhrContext *context, uint32_t width, uint32_t height, const char *path);
 
+/* A picture on its way into a file, on a thread: to compress a large one takes longer than a window may be deaf. */
+typedef struct Saving {
+    Worker          worker; /* from the first file on */
+    const BhrImage *image;
+    char            path[FOLDER_NAME + PICTURE_NAME];
+    BhrStatus       status; /* a failure was reported */
+} Saving;
+
 /* A picture that is rendered in the background. */
 typedef struct PictureJob {
     BhrContext *context; /* its own, from the first picture on */
     BhrJob     *job;     /* NULL: none is under way */
+    Saving      saving;  /* of the job that is done */
     BhrImage    image;
     double      fraction; /* the part that is done */
     char        path[PICTURE_NAME];
@@ -25,10 +35,10 @@ typedef struct PictureJob {
 
 typedef enum PictureEnd { PICTURE_NONE, PICTURE_RUNNING, PICTURE_SAVED, PICTURE_FAILED } PictureEnd;
 
-/* Begins a picture of a scene, as viewer-0001.png or the next free number, in the working folder, on the adapter of
- * `context` and with its map of the sky and its LUT. 1, or 0 after a message. */
-int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const Scene *scene, uint32_t width,
-                           uint32_t height);
+/* Begins a picture of a scene, as viewer-0001.png or the next free number, in the working folder, on an adapter and
+ * with the map of the sky and the LUT that `from` has. 1, or 0 after a message. */
+int picture_begin_numbered(PictureJob *picture, const BhrAdapterInfo *adapter, const BhrContext *from,
+                           const Scene *scene, uint32_t width, uint32_t height);
 
 /* Whether one is under way; the one that is done is saved, and it is said where. */
 PictureEnd picture_poll(PictureJob *picture);
@@ -45,16 +55,18 @@ typedef struct Recorder {
     uint32_t    width, height;  /* of every frame: a film does not change its size when the window does */
     Scene      *scenes;         /* of all frames */
     unsigned    taken, room;    /* how many there are, and fit */
-    unsigned    saved;          /* frames */
+    unsigned    begun, saved;   /* frames */
     BhrContext *context;        /* its own; NULL: there is no film */
     BhrJob     *job;            /* the next frame's; NULL: none is under way */
-    BhrImage    image;
+    Saving      saving;         /* of the one before */
+    BhrImage    images[2];      /* frames in turn: one is rendered while the other is saved */
     char        folder[FOLDER_NAME];
 } Recorder;
 
-/* Begins a film in a new folder, viewer-film-01 or the next free number, on the adapter of `context` and with its map
- * of the sky and its LUT; says where. 1, or 0 after a message. */
-int recorder_start(Recorder *recorder, const BhrContext *context, uint32_t width, uint32_t height);
+/* Begins a film in a new folder, viewer-film-01 or the next free number, on an adapter and with the map of the sky and
+ * the LUT that `from` has; says where. 1, or 0 after a message. */
+int recorder_start(Recorder *recorder, const BhrAdapterInfo *adapter, const BhrContext *from, uint32_t width,
+                   uint32_t height);
 
 /* The next frame's scene, if it takes any. */
 void recorder_take(Recorder *recorder, const Scene *scene);

@@ -306,7 +306,7 @@ void App::draw_panels(const Layout &layout) {
     {
         const FixedWindow window(sections_, "Scene", layout.settings);
         files_.draw(scene_, history_);
-        comparison_.draw(scene_, context_);
+        comparison_.draw(scene_, adapter_);
         settings_.draw(scene_, inspector_.numbers(), frame_settings_, clock_, sections_,
                        [&] { light_scope_.draw(picture_.pixels(), pictures_, auto_ev_, scene_.film()); });
     }

@@ -25,12 +25,12 @@ Result Comparison::load(const std::string &text) {
     return result;
 }
 
-Result Comparison::keep(const Scene &scene, const BhrContext *context) {
+Result Comparison::keep(const Scene &scene, const BhrAdapterInfo &adapter) {
     std::string text;
     Result      result = scene.save_text(text);
     if (result.ok() && context_ == nullptr) {
         BhrContext *made = nullptr;
-        result = result_of(create_context_beside(context, &made));
+        result = result_of(create_context_beside(&adapter, &made));
         context_.reset(made);
         queue_ = result.ok() ? std::make_unique<FrameQueue>(made) : nullptr;
     }
@@ -48,11 +48,11 @@ Result Comparison::exchange(Scene &scene) {
     return result.ok() ? load(b) : result;
 }
 
-void Comparison::draw(Scene &scene, const BhrContext *context) {
+void Comparison::draw(Scene &scene, const BhrAdapterInfo &adapter) {
     forget_places();
     begin_section("A and B");
     if (ImGui::Button("keep as A")) {
-        const Result result = keep(scene, context);
+        const Result result = keep(scene, adapter);
         report("A and B", "keep", result.message);
         shows_ |= result.ok();
     }

@@ -12,7 +12,7 @@
 class Comparison : public Widgets {
 public:
     // Beneath the row of files: keep, show, A's camera, exchange.
-    void draw(Scene &scene, const BhrContext *context);
+    void draw(Scene &scene, const BhrAdapterInfo &adapter);
     // Begins A's picture where there is a new one to show: of A's setting at B's time, seen by B's camera or its own.
     void submit(const Scene &scene, uint32_t width, uint32_t height, double now);
     // Takes A's picture that is done. True: the window has something new to show.
@@ -26,7 +26,7 @@ public:
     bool           kept() const { return !text_.empty(); }
 
 private:
-    Result keep(const Scene &scene, const BhrContext *context);
+    Result keep(const Scene &scene, const BhrAdapterInfo &adapter);
     Result load(const std::string &text);
     Result exchange(Scene &scene);
 
