@@ -24,7 +24,7 @@ int text_window_show(TextWindow *text, GLFWwindow *below, const char *const *lin
  * the loop. */
 void text_window_follow(TextWindow *text, GLFWwindow *below);
 
-/* Nothing where none is shown. */
+/* Takes the text away, if it is shown. */
 void text_window_hide(TextWindow *text);
 
 #endif

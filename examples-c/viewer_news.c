@@ -93,8 +93,9 @@ void viewer_update_title(Viewer *v, int moving) {
     news_of_work(v);
     const char *late = v->late_count > 0 ? "   after this frame .." : "";
     const char *news = now < v->news_until ? v->news : "";
-    snprintf(title, sizeof title, "bhr%s%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", late, news,
-             rate, gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
+    snprintf(title, sizeof title, "bhr%s%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", late,
+             news, rate, gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate,
+             look, scale);
     glfwSetWindowTitle(v->window, title);
     v->titled_at = now;
     v->frames_untitled = 0;
