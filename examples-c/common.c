@@ -84,6 +84,26 @@ BhrStatus create_context_on(BhrBackend backend, BhrContext **out) {
     return bhr_context_create(BHR_ABI_VERSION, &options, out);
 }
 
+BhrStatus create_context_beside(const BhrAdapterInfo *adapter, BhrContext **out) {
+    BhrContextOptions options;
+    uint32_t          count = 0;
+    BHR_INIT(options);
+    options.backend = adapter->backend;
+    if (bhr_adapter_count(&count) < 0) {
+        count = 0; /* the first one of this kind will do */
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        BhrAdapterInfo listed;
+        BHR_INIT(listed);
+        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter->backend &&
+            strcmp(listed.name, adapter->name) == 0) {
+            options.adapter_index = (int32_t)i;
+            break;
+        }
+    }
+    return bhr_context_create(BHR_ABI_VERSION, &options, out);
+}
+
 /* ---- a bar ---- */
 
 #define PROGRESS_AFTER_SECONDS 0.5 /* what is done sooner needs no bar */

@@ -39,6 +39,8 @@ void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *inde
 
 /* A context with the defaults and this backend. */
 BhrStatus create_context_on(BhrBackend backend, BhrContext **out);
+/* A context with the defaults on the adapter of another one: what takes long there leaves that one free. */
+BhrStatus create_context_beside(const BhrAdapterInfo *adapter, BhrContext **out);
 
 /* ---- a bar on stderr, while something takes long ---- */
 typedef struct Progress {

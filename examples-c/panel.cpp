@@ -10,6 +10,8 @@
 //   panel/app          the loop                               panel/steps_plot   integration steps
 //   panel/window       GLFW, OpenGL, Dear ImGui               panel/performance  how fast frames come
 //   panel/files        scene files, undo and redo             panel/history      the texts for that
+//   panel/sections     windows that scroll                    panel/widgets      a value's widget, message and tip
+//   panel/light_scope  histogram and waveform                 panel/comparison   two settings, and a line between them
 #include "options.h"
 #include "panel/app.h"
 
@@ -47,7 +49,8 @@ int main(int argc, char **argv) {
     int32_t    backend = BHR_BACKEND_AUTO;
     int        help = 0;
     const Option table[] = {
-        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; a display may scale it", nullptr, nullptr},
+        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; 0x0: what the screen has room for", nullptr,
+         nullptr},
         {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light", BACKENDS, nullptr},
         {"--preset", OPTION_CHOICE, &options.preset, nullptr, "the look that it begins with", PRESETS, nullptr},
         {"--matter", OPTION_CHOICE, &options.matter, nullptr,
@@ -78,8 +81,9 @@ int main(int argc, char **argv) {
         options_print(stdout, table, COUNT_OF(table));
         return EXIT_SUCCESS;
     }
-    if (options.size[0] == 0 || options.size[1] == 0 || options.size[0] > 16384 || options.size[1] > 16384) {
-        std::fprintf(stderr, "%s: --size takes sides of 1 to 16384\n", argv[0]);
+    const uint32_t *size = options.size;
+    if ((size[0] == 0) != (size[1] == 0) || size[0] > 16384 || size[1] > 16384) {
+        std::fprintf(stderr, "%s: --size takes sides of 1 to 16384, or 0x0\n", argv[0]);
         return EXIT_USAGE;
     }
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ); // --verbose is read while the program runs

@@ -4,6 +4,8 @@
 
 #include "vectors.h"
 
+#include <stdlib.h>
+
 /* The first look is the library's default scene: the camera is at (0, 26, 2.5). */
 const SceneOptions SCENE_DEFAULTS = {
     .mass = 1.0,
@@ -160,6 +162,21 @@ BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
     if (status >= 0) {
         status = bhr_set_quality(context, &scene->quality);
     }
+    return status;
+}
+
+BhrStatus scene_copy(const BhrContext *from, BhrContext *to) {
+    size_t    size = 0;
+    BhrStatus status = bhr_scene_save(from, NULL, 0, &size);
+    char     *text = status < 0 ? NULL : malloc(size + 1);
+    if (text == NULL) {
+        return status < 0 ? status : BHR_ERROR_OUT_OF_MEMORY;
+    }
+    status = bhr_scene_save(from, text, size + 1, &size);
+    if (status >= 0) {
+        status = bhr_scene_load(to, text, size);
+    }
+    free(text);
     return status;
 }
 

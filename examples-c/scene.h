@@ -57,6 +57,10 @@ BhrStatus scene_read(Scene *scene, BhrContext *context);
 /* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
 BhrStatus scene_apply(const Scene *scene, BhrContext *context);
 
+/* Gives one context the scene of another, with its map of the sky and its LUT, as text: what moves in that is as it
+ * begins. Errors: as the library's. */
+BhrStatus scene_copy(const BhrContext *from, BhrContext *to);
+
 /* Makes forward and up unit vectors, up turned until it stands on forward. */
 void camera_make_orthonormal(BhrCamera *camera);
 

@@ -5,6 +5,7 @@
 #include "scene_options.h"
 #include "viewer.h"
 #include "viewer_input.h"
+#include "viewer_news.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,8 +16,7 @@
 #define MACHINE_STEP (1.0 / 60.0) /* between the frames of --frames */
 #define MOVING_FOR 0.2            /* after a change by hand another one is likely for so long */
 #define RESTING_WAIT 0.25         /* between looks at a picture that rests, or cannot be seen */
-#define TITLE_PERIOD 0.25
-#define NEWS_FOR 4.0 /* of a picture, in the title */
+#define BUSY_WAIT 0.02            /* between looks at frames in the background */
 #define MOST_FAILURES 3 /* frames in a row, before it gives up */
 
 typedef struct Settings {
@@ -81,7 +81,7 @@ static int is_moving(const Viewer *v) {
     if (v->still) {
         return 0;
     }
-    return v->recorder.running || v->fixed_step > 0.0 || v->now - v->changed_at < MOVING_FOR ||
+    return v->recorder.taking || v->fixed_step > 0.0 || v->now - v->changed_at < MOVING_FOR ||
            pilot_is_moving(&v->pilot) ||
            (time_runs(v) && (v->pilot.motion != BHR_MOTION_STATIC || scene_changes_with_time(&v->scene)));
 }
@@ -117,85 +117,83 @@ static void move(Viewer *v) {
     if (v->still || is_complete(v) || (v->fixed_step > 0.0 && v->skipped)) {
         return; /* every step of a machine's run is presented */
     }
-    if (v->fixed_step > 0.0 || v->recorder.running) {
+    if (v->fixed_step > 0.0 || v->recorder.taking) {
         seconds = v->fixed_step > 0.0 ? v->fixed_step : 1.0 / RECORDED_RATE;
     }
     double    proper_time = time_runs(v) ? v->pace * v->scene.mass * seconds : 0.0;
-    BhrStatus status = pilot_step(&v->pilot, &v->scene, v->context, seconds, proper_time);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
+    if (status >= 0) {
+        status = pilot_step(&v->pilot, &v->scene, v->tester, seconds, proper_time);
+    }
     if (status < 0) {
         report_failure("move the camera", status);
         go_back(v);
     }
 }
 
-/* The cost of a presented frame: the governor and the title want to know. */
-static void account(Viewer *v, int moving) {
-    BhrFrameStats stats;
-    BHR_INIT(stats);
-    double        now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
-    BhrStatus     status = bhr_frame_stats(v->context, &stats);
-    governor_hear(&v->governor, moving, seconds, status >= 0 ? (double)stats.gpu_ns * 1e-9 : 0.0);
+/* The cost of a presented frame: the governor wants to know. */
+static void account(Viewer *v) {
+    double now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
+    governor_hear(&v->governor, v->frame_moves, seconds, (double)v->frame.stats.gpu_ns * 1e-9);
     v->presented_at = now;
-    v->good = v->scene;
+    v->good = v->frame_scene;
     v->failures = 0;
     v->frames++;
     v->frames_untitled++;
+    if (v->recorder.taking) {
+        Scene scene = v->frame_scene;
+        governor_choose_for_picture(&v->governor, &scene.quality);
+        recorder_take(&v->recorder, &scene);
+    }
 }
 
-/* Renders and presents the scene, and deals with every status that can come of it. */
-static void draw(Viewer *v) {
-    const int moving = is_moving(v);
-    Scene     shown = v->scene;
-    if (moving || v->dirty) {
+/* Begins to render and to present the scene. */
+static void start_frame(Viewer *v) {
+    Scene shown = v->frame_scene = v->scene;
+    v->frame_moves = is_moving(v);
+    if (v->frame_moves || v->dirty) {
         governor_restart(&v->governor);
     }
     v->dirty = 0;
-    governor_choose(&v->governor, moving, &shown.quality);
-    BhrStatus status = scene_apply(&shown, v->context);
-    if (status >= 0) {
-        status = bhr_render_surface(v->context, v->surface);
-    }
-    v->skipped = status == BHR_FRAME_SKIPPED;
-    switch (status) {
+    governor_choose(&v->governor, v->frame_moves, &shown.quality);
+    frame_begin(&v->frame, v->context, v->surface, &shown);
+}
+
+/* Deals with every status that can come of a frame. */
+static void finish_frame(Viewer *v) {
+    v->skipped = v->frame.status == BHR_FRAME_SKIPPED;
+    switch (v->frame.status) {
     case BHR_OK:
-        account(v, moving);
+        account(v);
         break;
     case BHR_FRAME_SKIPPED:
         v->dirty = 1;
         break;
     case BHR_ERROR_DEVICE_LOST:
-        report_failure("render the frame", status);
         v->broken |= ++v->failures >= MOST_FAILURES || !recover(v);
         break;
     case BHR_ERROR_SURFACE_LOST:
-        report_failure("render the frame", status);
         v->broken |= ++v->failures >= MOST_FAILURES || !reopen_surface(v);
         break;
     default: /* what was set cannot be, or not here: the last picture could */
-        report_failure("render the frame", status);
         go_back(v);
         break;
     }
 }
 
-void viewer_apply_for_picture(Viewer *v) {
-    Scene picture = v->scene;
-    governor_choose_for_picture(&v->governor, &picture.quality);
-    BhrStatus status = scene_apply(&picture, v->context);
-    if (status < 0) {
-        report_failure("prepare a picture", status); /* then it is as fine as the window is */
-    }
-}
-
 BhrStatus viewer_load(Viewer *v, const char *path) {
     Scene     scene;
-    BhrStatus status = bhr_scene_load_file(v->context, path);
+    BhrStatus status = bhr_scene_load_file(v->tester, path);
+    if (status >= 0) {
+        status = bhr_scene_load_file(v->context, path);
+    }
     if (status >= 0) {
         status = scene_read(&scene, v->context);
     }
     if (status < 0) {
         return status;
     }
+    recorder_stop(&v->recorder); /* its context has the map and the LUT of the scene before */
     governor_take_resolution(&v->governor, v->context);
     v->scene = v->first = scene;
     pilot_stop(&v->pilot, scene.camera.motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : scene.camera.motion);
@@ -210,41 +208,23 @@ BhrStatus viewer_load(Viewer *v, const char *path) {
 /* Seconds until the display wants the next frame. Some displays, as one without a screen, do not hold frames back: what
  * nobody would see is not rendered. */
 static double spare_time(const Viewer *v) {
-    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->recorder.running || v->presented_at == 0.0) {
+    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->presented_at == 0.0) {
         return 0.0;
     }
     double spare = 0.9 * v->governor.period - (wall_seconds() - v->presented_at);
     return spare > 0.5 * v->governor.period ? spare : 0.0; /* less may be the display's own rhythm: leave it alone */
 }
 
-/* Looks after a picture that is rendered in the background. */
-static void watch_picture(Viewer *v) {
-    switch (picture_poll(&v->picture)) {
-    case PICTURE_NONE:
-        break;
-    case PICTURE_RUNNING:
-        snprintf(v->news, sizeof v->news, "   %s %.0f %%", v->picture.path, 100.0 * v->picture.fraction);
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    case PICTURE_SAVED:
-        snprintf(v->news, sizeof v->news, "   saved %s", v->picture.path);
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    case PICTURE_FAILED:
-        snprintf(v->news, sizeof v->news, "   no picture: see the terminal");
-        v->news_until = v->now + NEWS_FOR;
-        break;
-    }
-}
-
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
 static void handle_events(Viewer *v) {
     const double spare = spare_time(v);
-    if (!is_visible(v)) {
-        glfwWaitEvents();
+    if (v->frame.busy) {
+        glfwWaitEventsTimeout(BUSY_WAIT); /* its end is an event, too */
+    } else if (!is_visible(v)) {
+        glfwWaitEventsTimeout(RESTING_WAIT);
     } else if (v->skipped || !needs_frame(v)) {
         v->presented_at = 0.0;
-        glfwWaitEventsTimeout(v->picture.job != NULL ? TITLE_PERIOD / 4.0 : RESTING_WAIT);
+        glfwWaitEventsTimeout(viewer_is_busy(v) ? BUSY_WAIT : RESTING_WAIT);
         v->now = wall_seconds(); /* the scene did not move meanwhile */
     } else if (spare > 0.0) {
         glfwWaitEventsTimeout(spare);
@@ -253,45 +233,42 @@ static void handle_events(Viewer *v) {
     }
 }
 
-static void update_title(Viewer *v) {
-    double        elapsed = v->now - v->titled_at;
-    BhrHoleInfo   info;
-    BHR_INIT(info);
-    BhrFrameStats stats;
-    BHR_INIT(stats);
-    if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
-        return;
+/* The window has another size since the last frame. */
+static void follow_size(Viewer *v) {
+    v->resized = 0;
+    BhrStatus status = bhr_surface_resize(v->surface, v->size[0], v->size[1]);
+    if (status < 0) {
+        report_failure("follow the window's size", status); /* the next frame says whether that matters */
     }
-    char title[288], rate[32], gpu[32], scale[32] = "", look[32] = "";
-    snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
-    snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
-    if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
-        snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
-    }
-    if (v->preset != NO_PRESET) {
-        snprintf(look, sizeof look, "   %s, %s", choice_name(PRESETS, v->preset),
-                 choice_name(PRESET_MATTERS, v->preset_matter));
-    }
-    const char *news = v->now < v->news_until ? v->news : "";
-    snprintf(title, sizeof title, "bhr%s   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", news, rate,
-             gpu, v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
-    glfwSetWindowTitle(v->window, title);
-    v->titled_at = v->now;
-    v->frames_untitled = 0;
 }
 
-/* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. */
+/* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. Before
+ * the next frame there is a turn without one, so that the loop can wait for the display. */
 static void turn(Viewer *v) {
-    move(v);
-    if (needs_frame(v)) {
-        draw(v);
-        if (v->recorder.running) {
-            viewer_apply_for_picture(v);
-            recorder_add(&v->recorder, v->context);
+    if (v->frame.busy) {
+        if (frame_take(&v->frame, 0)) {
+            finish_frame(v);
+        }
+    } else {
+        input_act_late(v);
+        if (v->resized) {
+            follow_size(v);
+        }
+        move(v);
+        if (needs_frame(v)) {
+            start_frame(v);
         }
     }
-    watch_picture(v);
-    update_title(v);
+    text_window_follow(&v->keys, v->window);
+    viewer_watch(v);
+    viewer_update_title(v, is_moving(v));
+}
+
+/* The context is the caller's again. */
+static void wait_for_frame(Viewer *v) {
+    if (frame_take(&v->frame, 1)) {
+        finish_frame(v);
+    }
 }
 
 /* Until the window is closed, or everything is shown. */
@@ -301,6 +278,10 @@ static void show(Viewer *v) {
         handle_events(v);
         turn(v);
     }
+    if (glfwWindowShouldClose(v->window)) {
+        glfwHideWindow(v->window); /* a user who has closed it need not see the end of a long frame */
+    }
+    wait_for_frame(v);
 }
 
 /* The last picture stays, as it is: whoever tests the window can compare. */
@@ -325,11 +306,7 @@ static void on_framebuffer_size(GLFWwindow *window, int width, int height) {
     v->size[0] = (uint32_t)width;
     v->size[1] = (uint32_t)height;
     v->changed_at = v->now;
-    v->dirty = 1;
-    BhrStatus status = bhr_surface_resize(v->surface, v->size[0], v->size[1]);
-    if (status < 0) {
-        report_failure("follow the window's size", status); /* the next frame says whether that matters */
-    }
+    v->dirty = v->resized = 1;
 }
 
 /* The system wants the contents again, as while an edge is dragged: GLFW's poll does not return then. */
@@ -337,6 +314,13 @@ static void on_refresh(GLFWwindow *window) {
     Viewer *v = glfwGetWindowUserPointer(window);
     v->dirty = 1;
     turn(v);
+}
+
+/* By the window's frame. */
+static void on_close(GLFWwindow *window) {
+    Viewer *v = glfwGetWindowUserPointer(window);
+    glfwSetWindowShouldClose(window, GLFW_FALSE);
+    viewer_quit(v);
 }
 
 /* ---- beginning and end ---- */
@@ -365,19 +349,14 @@ static double display_rate(void) {
     return mode != NULL ? mode->refreshRate : 0.0;
 }
 
-static void print_what_renders(const BhrContext *context, int32_t backend) {
-    BhrAdapterInfo adapter;
-    BHR_INIT(adapter);
-    if (bhr_context_adapter(context, &adapter) < 0) {
-        return;
-    }
+static void print_what_renders(const BhrAdapterInfo *adapter, int32_t backend) {
     printf("rendering on ");
-    print_adapter(stdout, &adapter);
+    print_adapter(stdout, adapter);
     putchar('\n');
     if (backend == BHR_BACKEND_AUTO) {
-        print_driver_advice(stdout, &adapter, "");
+        print_driver_advice(stdout, adapter, "");
     }
-    printf("H prints the keys, Esc quits\n");
+    printf("H shows the keys, Esc quits\n");
 }
 
 /* A context on an adapter that can present to the window. */
@@ -393,19 +372,19 @@ static int open_context(Viewer *v, const Settings *s) {
         options.log_level = s->verbose ? BHR_LOG_INFO : BHR_LOG_WARN;
         status = bhr_context_create(BHR_ABI_VERSION, &options, &v->context);
     }
+    if (status >= 0) {
+        status = create_context_on(BHR_BACKEND_CPU, &v->tester);
+    }
+    if (status >= 0) {
+        BHR_INIT(v->adapter);
+        status = bhr_context_adapter(v->context, &v->adapter);
+    }
     if (status < 0) {
         report_failure("create a context", status);
         return 0;
     }
-    print_what_renders(v->context, s->backend);
+    print_what_renders(&v->adapter, s->backend);
     return 1;
-}
-
-/* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
-static int is_software(const BhrContext *context) {
-    BhrAdapterInfo adapter;
-    BHR_INIT(adapter);
-    return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
 }
 
 /* The goal of --matter auto: the window, at the display's rate. */
@@ -425,7 +404,9 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     if (scene_input_finish(s->input, v->context, s->options, s->argc, s->argv) != 0) {
         return 0;
     }
-    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
+    /* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
+    const int software = (v->adapter.flags & BHR_ADAPTER_SOFTWARE) != 0;
+    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), software ? 0.25 : 1.0);
     governor_take_resolution(&v->governor, v->context);
     v->scene = s->input->scene;
     const int32_t motion = v->scene.camera.motion; /* the pilot sets the motion */
@@ -433,6 +414,11 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     BhrStatus status = scene_apply(&v->scene, v->context);
     if (status < 0) {
         report_failure("set the scene", status);
+        return 0;
+    }
+    status = scene_copy(v->context, v->tester);
+    if (status < 0) {
+        report_failure("copy the scene", status);
         return 0;
     }
     v->first = v->good = v->scene;
@@ -472,24 +458,27 @@ static int start(Viewer *v, const Settings *s) {
     glfwGetFramebufferSize(v->window, &width, &height);
     v->size[0] = (uint32_t)width;
     v->size[1] = (uint32_t)height;
-    if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v)) {
+    if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v) ||
+        !frame_start(&v->frame, glfwPostEmptyEvent)) {
         return 0;
     }
     glfwSetWindowUserPointer(v->window, v);
     glfwSetFramebufferSizeCallback(v->window, on_framebuffer_size);
     glfwSetWindowRefreshCallback(v->window, on_refresh);
+    glfwSetWindowCloseCallback(v->window, on_close);
     input_attach(v);
     return 1;
 }
 
 /* In any order; NULL is fine, except for the window. */
 static void finish(Viewer *v) {
-    if (v->recorder.running) {
-        recorder_stop(&v->recorder);
-    }
+    frame_end(&v->frame);
+    recorder_cancel(&v->recorder);
     picture_end(&v->picture);
+    text_window_hide(&v->keys);
     bhr_surface_destroy(v->surface);
     bhr_context_destroy(v->context);
+    bhr_context_destroy(v->tester);
     if (v->window != NULL) {
         glfwDestroyWindow(v->window);
     }

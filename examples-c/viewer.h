@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer.h -- what the viewer's parts share: its one struct, which GLFW's callbacks find through the window's user
- * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes. */
+ * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes, viewer_news.c tells. */
 #ifndef EXAMPLES_VIEWER_H
 #define EXAMPLES_VIEWER_H
 
 #include "glfw_window.h"
 #include "scene.h"
 #include "viewer_camera.h"
+#include "viewer_frame.h"
+#include "viewer_keys.h"
 #include "viewer_pictures.h"
 #include "viewer_quality.h"
 
 #define SAID 96
+#define MOST_LATE 8
 #define SAVED_SCENE "viewer-scene.toml"
 #define FIRST_PACE 3.0 /* M per second: the disk's inner edge turns in half a minute */
 
@@ -23,6 +26,9 @@ typedef struct Mouse {
 typedef struct Viewer {
     GLFWwindow *window;
     BhrContext *context;
+    BhrContext *tester; /* renders nothing: changes are tried on it, and it answers while a frame is rendered; has the
+                           map and the LUT of the other one, too */
+    BhrAdapterInfo adapter; /* that renders */
     BhrSurface *surface;
     BhrPresentMode present;
     uint32_t    size[2]; /* of the framebuffer, in pixels: larger than the window on a high-density display */
@@ -30,12 +36,19 @@ typedef struct Viewer {
     Scene    first;      /* for going back to the beginning */
     Scene    scene;      /* what the next frame shows */
     Pilot    pilot;
+    Frame    frame;
+    Scene    frame_scene; /* that the frame in work, or the last one, was begun for */
+    int      frame_moves; /* whether it is one of a moving picture */
+    int      resized;     /* the surface does not know yet */
+    int      late[MOST_LATE], late_count; /* keys that wait for the frame's end, by their place in the table */
     Scene    good;       /* what the last presented frame showed: to go back to when a frame fails */
     double   pace;       /* M of the camera's proper time that go by in a second; < 0: backwards */
     int      paused;
     Governor governor;
     Recorder recorder;
     PictureJob picture;
+    TextWindow keys;     /* shows what keys do */
+    int        quitting; /* the viewer ends when picture and film are saved */
 
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */
@@ -49,7 +62,7 @@ typedef struct Viewer {
     double   changed_at;    /* when the picture was last changed by hand */
     double   presented_at;  /* when the last frame was done; 0: there was a pause since */
     double   titled_at;
-    char     news[PICTURE_NAME + 32]; /* of pictures, in the title */
+    char     news[FOLDER_NAME + PICTURE_NAME + 96]; /* of pictures and films, in the title */
     double   news_until;
     unsigned frames_untitled; /* presented since the title was written */
     uint64_t frames;          /* presented */
@@ -65,8 +78,5 @@ typedef struct Viewer {
 /* Shows the scene of a file, and begins there: what is asked for by keys begins anew. Errors: as the library's; then it
  * shows what it did. */
 BhrStatus viewer_load(Viewer *viewer, const char *path);
-
-/* Readies the context for bhr_render_image: the scene of the window, not coarser than a picture to keep should be. */
-void viewer_apply_for_picture(Viewer *viewer);
 
 #endif

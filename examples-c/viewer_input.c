@@ -3,6 +3,7 @@
 #include "viewer_input.h"
 
 #include "matter.h"
+#include "viewer_news.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -106,6 +107,14 @@ static void toggle_effect(Viewer *v, double bit) {
     SAY(v, "%s %s", choice_name(names, (int32_t)effect), v->scene.effects & effect ? "on" : "off");
 }
 
+/* By quarters, from what physics says down to nothing, and back to it. */
+static void grade_effect(Viewer *v, double which) {
+    static const char *const names[] = {"Doppler shift", "gravitational redshift", "beaming"};
+    double                  *strength = &v->scene.effect_strengths[(int)which];
+    *strength = *strength > 0.0 ? fmax(ceil(*strength * 4.0 - 1.0) / 4.0, 0.0) : 1.0;
+    SAY(v, "%s at %.0f %%", names[(int)which], 100.0 * *strength);
+}
+
 static void toggle_sky(Viewer *v, double unused) {
     (void)unused;
     v->scene.has_sky = !v->scene.has_sky;
@@ -121,7 +130,7 @@ static void cycle_motion(Viewer *v, double unused) {
     BhrHoleInfo info;
     BHR_INIT(info);
     (void)unused;
-    if (bhr_hole_info(v->context, &info) >= 0 && info.camera_radius <= info.horizon_radius) {
+    if (bhr_hole_info(v->tester, &info) >= 0 && info.camera_radius <= info.horizon_radius) {
         SAY(v, "inside the horizon every observer falls");
         return;
     }
@@ -141,7 +150,7 @@ static void toggle_flight(Viewer *v, double unused) {
     SAY(v, v->pilot.flying ? "free flight: W A S D Q E, Shift for speed, right drag to look" : "about the hole again");
     BhrHoleInfo info;
     BHR_INIT(info);
-    if (v->pilot.flying && bhr_hole_info(v->context, &info) >= 0 && info.camera_radius > info.horizon_radius) {
+    if (v->pilot.flying && bhr_hole_info(v->tester, &info) >= 0 && info.camera_radius > info.horizon_radius) {
         v->pilot.motion = BHR_MOTION_STATIC;
     }
 }
@@ -242,12 +251,12 @@ static void reset(Viewer *v, double unused) {
     SAY(v, "back to the beginning");
 }
 
-/* Over the one that was saved before. The context may hold a coarser scene, for a frame while it moves. */
+/* Over the one that was saved before. */
 static void save_scene(Viewer *v, double unused) {
     (void)unused;
-    BhrStatus status = scene_apply(&v->scene, v->context);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
     if (status >= 0) {
-        status = bhr_scene_save_file(v->context, SAVED_SCENE);
+        status = bhr_scene_save_file(v->tester, SAVED_SCENE);
     }
     if (status < 0) {
         report_failure("save the scene", status);
@@ -262,7 +271,7 @@ static void load_scene(Viewer *v, double unused) {
     uint32_t  frames = 1;
     BhrStatus status = viewer_load(v, v->scene_path);
     if (status >= 0) {
-        status = bhr_scene_pictures(v->context, NULL, NULL, &frames, NULL);
+        status = bhr_scene_pictures(v->tester, NULL, NULL, &frames, NULL);
     }
     if (status < 0) {
         report_failure("load the scene", status);
@@ -275,22 +284,26 @@ static void save_picture(Viewer *v, double unused) {
     (void)unused;
     if (v->picture.job != NULL) {
         picture_cancel(&v->picture);
-        SAY(v, "picture broken off: %s", v->picture.path);
         v->news_until = 0.0;
     } else if (v->size[0] != 0 && v->size[1] != 0) {
         Scene scene = v->scene;
         governor_choose_for_picture(&v->governor, &scene.quality);
         scene.film.auto_adaptation = 1.0; /* the picture's context has shown nothing before */
-        picture_begin_numbered(&v->picture, v->context, &scene, v->size[0], v->size[1]);
+        picture_begin_numbered(&v->picture, &v->adapter, v->tester, &scene, v->size[0], v->size[1]);
     }
 }
 
+/* Begins, ends the taking, and breaks off what is still being rendered. */
 static void toggle_recording(Viewer *v, double unused) {
     (void)unused;
-    if (v->recorder.running) {
+    if (v->recorder.taking) {
         recorder_stop(&v->recorder);
+        SAY(v, "recording ends: %u frames; R again breaks off what is not rendered yet", v->recorder.taken);
+    } else if (v->recorder.context != NULL) {
+        recorder_cancel(&v->recorder);
+        v->news_until = 0.0;
     } else if (v->size[0] != 0 && v->size[1] != 0) {
-        recorder_start(&v->recorder, v->size[0], v->size[1]);
+        recorder_start(&v->recorder, &v->adapter, v->tester, v->size[0], v->size[1]);
     }
 }
 
@@ -308,14 +321,11 @@ static void toggle_full_screen(Viewer *v, double unused) {
     }
 }
 
-static void print_keys(Viewer *v, double unused) {
-    (void)v, (void)unused;
-    input_print_keys();
-}
+static void show_keys(Viewer *v, double unused);
 
 static void quit(Viewer *v, double unused) {
     (void)unused;
-    glfwSetWindowShouldClose(v->window, GLFW_TRUE);
+    viewer_quit(v);
 }
 
 /* ---- the table ---- */
@@ -327,8 +337,11 @@ typedef struct Key {
     const char *help;  /* also what could not be done when bhr refuses the change */
     void (*act)(Viewer *, double argument);
     double argument;
-    int    held; /* acts with -argument when the key is let go */
+    int    kind; /* HELD, LATE or 0 */
 } Key;
+
+#define HELD 1 /* acts with -argument when the key is let go */
+#define LATE 2 /* needs the context: acts when no frame is rendered */
 
 static const Key KEYS[] = {
     {0, 0, "left drag", "go about the hole", NULL, 0, 0},
@@ -336,13 +349,13 @@ static const Key KEYS[] = {
     {0, 0, "wheel", "go nearer, or away", NULL, 0, 0},
     {GLFW_KEY_C, 0, NULL, "look at the hole", centre_hole, 0, 0},
     {GLFW_KEY_F, 0, NULL, "fly freely, and back", toggle_flight, 0, 0},
-    {GLFW_KEY_W, 0, NULL, "fly forward", thrust_forward, 1, 1},
-    {GLFW_KEY_S, 0, NULL, "fly backward", thrust_forward, -1, 1},
-    {GLFW_KEY_A, 0, NULL, "fly to the left", thrust_right, -1, 1},
-    {GLFW_KEY_D, 0, NULL, "fly to the right", thrust_right, 1, 1},
-    {GLFW_KEY_Q, 0, NULL, "fly down", thrust_up, -1, 1},
-    {GLFW_KEY_E, 0, NULL, "fly up", thrust_up, 1, 1},
-    {GLFW_KEY_LEFT_SHIFT, 0, "Shift", "fly four times as fast", thrust_more, 1, 1},
+    {GLFW_KEY_W, 0, NULL, "fly forward", thrust_forward, 1, HELD},
+    {GLFW_KEY_S, 0, NULL, "fly backward", thrust_forward, -1, HELD},
+    {GLFW_KEY_A, 0, NULL, "fly to the left", thrust_right, -1, HELD},
+    {GLFW_KEY_D, 0, NULL, "fly to the right", thrust_right, 1, HELD},
+    {GLFW_KEY_Q, 0, NULL, "fly down", thrust_up, -1, HELD},
+    {GLFW_KEY_E, 0, NULL, "fly up", thrust_up, 1, HELD},
+    {GLFW_KEY_LEFT_SHIFT, 0, "Shift", "fly four times as fast", thrust_more, 1, HELD},
     {GLFW_KEY_N, 0, NULL, "move the camera as: static, free fall (into the hole), orbit", cycle_motion, 0, 0},
 
     {GLFW_KEY_SPACE, 0, "Space", "stop time, and let it go on", toggle_pause, 0, 0},
@@ -363,7 +376,7 @@ static const Key KEYS[] = {
     {GLFW_KEY_O, 1, NULL, "make the disk less opaque", change_opacity, -0.1, 0},
     {GLFW_KEY_T, 0, NULL, "make the disk more turbulent", change_turbulence, 0.1, 0},
     {GLFW_KEY_T, 1, NULL, "make the disk less turbulent", change_turbulence, -0.1, 0},
-    {GLFW_KEY_U, 0, NULL, "change the matter: soft disk, torus, halo, jet, as in the beginning", cycle_matter, 0, 0},
+    {GLFW_KEY_U, 0, NULL, "change the matter: disk, torus, halo, jet, as it was", cycle_matter, 0, 0},
     {GLFW_KEY_J, 0, NULL, "show a hot spot in orbit, or leave it out", toggle_hot_spot, 0, 0},
     {GLFW_KEY_K, 0, NULL, "show the stars, or leave them out", toggle_sky, 0, 0},
 
@@ -372,15 +385,18 @@ static const Key KEYS[] = {
     {GLFW_KEY_3, 0, NULL, "switch the beaming", toggle_effect, BHR_EFFECT_BEAMING, 0},
     {GLFW_KEY_4, 0, NULL, "switch the light delay", toggle_effect, BHR_EFFECT_LIGHT_DELAY, 0},
 
-    {GLFW_KEY_V, 0, NULL, "show: light, redshift, order, deflection, steps, metric, optical depth, intensity",
-     cycle_view, 0, 0},
+    {GLFW_KEY_1, 1, NULL, "show less of the Doppler shift, by quarters, then all", grade_effect, 0, 0},
+    {GLFW_KEY_2, 1, NULL, "show less of the gravitational redshift, then all", grade_effect, 1, 0},
+    {GLFW_KEY_3, 1, NULL, "show less of the beaming, then all", grade_effect, 2, 0},
+
+    {GLFW_KEY_V, 0, NULL, "show another quantity: light, redshift, order, deflection ..", cycle_view, 0, 0},
     {GLFW_KEY_P, 0, NULL, "change the projection", cycle_projection, 0, 0},
     {GLFW_KEY_RIGHT_BRACKET, 0, NULL, "widen the field of view", change_fov, 1.1, 0},
     {GLFW_KEY_LEFT_BRACKET, 0, NULL, "narrow the field of view", change_fov, 1 / 1.1, 0},
     {GLFW_KEY_UP, 0, "Up", "expose more", change_exposure, 0.25, 0},
     {GLFW_KEY_DOWN, 0, "Down", "expose less", change_exposure, -0.25, 0},
     {GLFW_KEY_G, 0, NULL, "change the tone map", cycle_tone_map, 0, 0},
-    {GLFW_KEY_Y, 0, NULL, "change the look: cinematic, physical, observatory, teaching", cycle_preset, 0, 0},
+    {GLFW_KEY_Y, 0, NULL, "change the look: cinematic, physical, observatory, teaching", cycle_preset, 0, LATE},
 
     {GLFW_KEY_L, 0, NULL, "let the quality follow the display's rate, or not", toggle_adaptive, 0, 0},
     {GLFW_KEY_B, 0, NULL, "take more samples a pixel", change_samples, 2, 0},
@@ -388,13 +404,13 @@ static const Key KEYS[] = {
     {GLFW_KEY_I, 0, NULL, "change the method of integration", cycle_method, 0, 0},
 
     {GLFW_KEY_F5, 0, "F5", "save the scene as " SAVED_SCENE, save_scene, 0, 0},
-    {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, 0},
+    {GLFW_KEY_F9, 0, "F9", "load the scene that was saved, or --scene's file anew", load_scene, 0, LATE},
     {GLFW_KEY_F12, 0, "F12", "save a picture; again: break it off", save_picture, 0, 0},
-    {GLFW_KEY_R, 0, NULL, "record pictures, and stop", toggle_recording, 0, 0},
+    {GLFW_KEY_R, 0, NULL, "record a film as pictures; again: stop; again: break off", toggle_recording, 0, 0},
     {GLFW_KEY_F11, 0, "F11", "fill the screen, or not", toggle_full_screen, 0, 0},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "begin again", reset, 0, 0},
-    {GLFW_KEY_H, 0, NULL, "print this", print_keys, 0, 0},
-    {GLFW_KEY_ESCAPE, 0, "Esc", "quit", quit, 0, 0},
+    {GLFW_KEY_H, 0, NULL, "show this, or hide it", show_keys, 0, 0},
+    {GLFW_KEY_ESCAPE, 0, "Esc", "quit, when picture and film are saved; again: without them", quit, 0, 0},
 };
 
 static void key_name(const Key *key, char *out, size_t size) {
@@ -409,11 +425,41 @@ static void key_name(const Key *key, char *out, size_t size) {
     }
 }
 
+#define LINE 128
+
+static void key_line(const Key *key, char out[LINE]) {
+    char name[32];
+    key_name(key, name, sizeof name);
+    snprintf(out, LINE, "%-12s %s", name, key->help);
+}
+
 void input_print_keys(void) {
     for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
-        char name[32];
-        key_name(&KEYS[i], name, sizeof name);
-        printf("  %-12s %s\n", name, KEYS[i].help);
+        char line[LINE];
+        key_line(&KEYS[i], line);
+        printf("  %s\n", line);
+    }
+}
+
+static void attach(Viewer *v, GLFWwindow *window);
+
+/* Over the window; where that cannot be, on the terminal. */
+static void show_keys(Viewer *v, double unused) {
+    static char lines[COUNT_OF(KEYS)][LINE];
+    const char *list[COUNT_OF(KEYS)];
+    (void)unused;
+    if (v->keys.window != NULL) {
+        text_window_hide(&v->keys);
+        return;
+    }
+    for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
+        key_line(&KEYS[i], lines[i]);
+        list[i] = lines[i];
+    }
+    if (text_window_show(&v->keys, v->window, list, COUNT_OF(KEYS))) {
+        attach(v, v->keys.window); /* a click may give it the keyboard */
+    } else {
+        input_print_keys();
     }
 }
 
@@ -422,32 +468,32 @@ void input_print_keys(void) {
 static const Key *find_key(int code, int mods) {
     for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
         if (KEYS[i].act != NULL && KEYS[i].key == code &&
-            (KEYS[i].held || KEYS[i].shift == ((mods & GLFW_MOD_SHIFT) != 0))) {
+            (KEYS[i].kind == HELD || KEYS[i].shift == ((mods & GLFW_MOD_SHIFT) != 0))) {
             return &KEYS[i];
         }
     }
     return NULL;
 }
 
-/* Every change is tried on the context at once: what bhr refuses is said and taken back, and the viewer goes on. */
-static void act(Viewer *v, const Key *key, double argument) {
+/* Every change is tried at once: what bhr refuses is said and taken back, and the viewer goes on. */
+static void act(Viewer *v, const Key *key) {
     const Scene scene = v->scene;
     const Pilot pilot = v->pilot;
     v->said[0] = '\0';
-    key->act(v, argument);
-    BhrStatus status = scene_apply(&v->scene, v->context);
+    key->act(v, key->argument);
+    BhrStatus status = scene_apply(&v->scene, v->tester);
     if (status < 0) {
         report_failure(key->help, status);
         v->scene = scene;
         v->pilot = pilot;
-        status = scene_apply(&v->scene, v->context);
+        status = scene_apply(&v->scene, v->tester);
         if (status < 0) {
             report_failure("take that back", status); /* a frame will say what is to be done */
         }
     } else if (v->said[0] != '\0') {
         puts(v->said);
     }
-    v->changed_at = v->now;
+    v->changed_at = wall_seconds();
     v->dirty = 1;
 }
 
@@ -458,16 +504,35 @@ static void on_key(GLFWwindow *window, int code, int scancode, int action, int m
     if (key == NULL || v->still) {
         return;
     }
-    if (key->held) {
+    if (key->kind == HELD) {
         if (action != GLFW_REPEAT) {
             key->act(v, action == GLFW_PRESS ? key->argument : -key->argument);
         }
         return;
     }
     /* Ctrl, Alt and Super belong to the desktop. */
-    if (action != GLFW_RELEASE && (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0) {
-        act(v, key, key->argument);
+    if (action == GLFW_RELEASE || (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) {
+        return;
     }
+    if (key->kind != LATE || (!v->frame.busy && v->late_count == 0)) {
+        act(v, key);
+    } else if (v->late_count < MOST_LATE) {
+        v->late[v->late_count++] = (int)(key - KEYS);
+    }
+}
+
+void input_act_late(Viewer *v) {
+    const int count = v->late_count;
+    v->late_count = 0;
+    for (int i = 0; i < count; i++) {
+        act(v, &KEYS[v->late[i]]);
+    }
+}
+
+/* The keys alone, of either window. */
+static void attach(Viewer *v, GLFWwindow *window) {
+    glfwSetWindowUserPointer(window, v);
+    glfwSetKeyCallback(window, on_key);
 }
 
 static void on_button(GLFWwindow *window, int button, int action, int mods) {
@@ -515,7 +580,7 @@ static void on_wheel(GLFWwindow *window, double dx, double dy) {
 }
 
 void input_attach(Viewer *v) {
-    glfwSetKeyCallback(v->window, on_key);
+    attach(v, v->window);
     glfwSetMouseButtonCallback(v->window, on_button);
     glfwSetCursorPosCallback(v->window, on_cursor);
     glfwSetScrollCallback(v->window, on_wheel);

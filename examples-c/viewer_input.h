@@ -6,9 +6,13 @@
 
 #include "viewer.h"
 
-/* Hears the window's keys and mouse from now on; the window's user pointer must be the viewer. */
+/* Hears a window's keys and mouse from now on; the window's user pointer must be the viewer. */
 void input_attach(Viewer *viewer);
 
+/* Does for keys that had to wait for the context. Call it while no frame is rendered. */
+void input_act_late(Viewer *viewer);
+
+/* On standard output. */
 void input_print_keys(void);
 
 #endif

@@ -6,11 +6,15 @@
 #include "picture.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_PICTURES 9999
 #define MOST_FILMS 99
+#define LARGEST_FRACTION 0.99 /* of a job that is not done; 1: the picture is being saved */
+#define MOST_FRAMES 18000u /* of a film, five minutes: their scenes take 48 MB */
+#define FRAMES_ROOM 600u   /* that memory is asked for at once */
 
 static BhrStatus render_and_save(BhrContext *context, const BhrImage *image, const char *path) {
     BhrStatus status = bhr_render_image(context, image);
@@ -28,6 +32,24 @@ int picture_save(BhrContext *context, uint32_t width, uint32_t height, const cha
         report_failure("save a picture", status);
     }
     return status >= 0;
+}
+
+static void save(void *argument) {
+    Saving *saving = argument;
+    saving->status = bhr_image_save(saving->image, saving->path);
+    if (saving->status < 0) {
+        report_failure("save a picture", saving->status);
+    }
+}
+
+/* Both stay as they are until the end is taken. Where there is no thread to be had, saves at once. */
+static void saving_begin(Saving *saving, const BhrImage *image) {
+    saving->image = image;
+    if (saving->worker.system != NULL || worker_start(&saving->worker, NULL)) {
+        worker_begin(&saving->worker, save, saving);
+    } else {
+        save(saving);
+    }
 }
 
 static int exists(const char *path) {
@@ -49,59 +71,18 @@ static int free_name(char *path) {
     return 0;
 }
 
-/* A context on the adapter of another one. */
-static BhrStatus open_beside(const BhrContext *context, BhrContext **beside) {
-    BhrContextOptions options;
-    BhrAdapterInfo    adapter;
-    BHR_INIT(options);
-    BHR_INIT(adapter);
-    BhrStatus status = bhr_context_adapter(context, &adapter);
-    if (status < 0) {
-        return status;
-    }
-    options.backend = adapter.backend;
-    uint32_t count = 0;
-    if (bhr_adapter_count(&count) < 0) {
-        count = 0; /* the first one of this kind will do */
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        BhrAdapterInfo listed;
-        BHR_INIT(listed);
-        if (bhr_adapter_info(i, &listed) >= 0 && listed.backend == adapter.backend &&
-            strcmp(listed.name, adapter.name) == 0) {
-            options.adapter_index = (int32_t)i;
-            break;
-        }
-    }
-    return bhr_context_create(BHR_ABI_VERSION, &options, beside);
-}
-
-/* Gives one context the scene of another, as text, and then the values of `scene`: in the text things that move are as
- * they begin. */
-static BhrStatus copy_scene(const BhrContext *from, const Scene *scene, BhrContext *to) {
-    size_t    size = 0;
-    BhrStatus status = bhr_scene_save(from, NULL, 0, &size);
-    char     *text = status < 0 ? NULL : malloc(size + 1);
-    if (text == NULL) {
-        return status < 0 ? status : BHR_ERROR_OUT_OF_MEMORY;
-    }
-    status = bhr_scene_save(from, text, size + 1, &size);
-    if (status >= 0) {
-        status = bhr_scene_load(to, text, size);
-    }
-    free(text);
-    return status < 0 ? status : scene_apply(scene, to);
-}
-
-int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const Scene *scene, uint32_t width,
-                           uint32_t height) {
+int picture_begin_numbered(PictureJob *picture, const BhrAdapterInfo *adapter, const BhrContext *from,
+                           const Scene *scene, uint32_t width, uint32_t height) {
     picture_cancel(picture);
     if (!free_name(picture->path) || !picture_allocate(&picture->image, BHR_FORMAT_RGBA8_SRGB, width, height)) {
         return 0;
     }
-    BhrStatus status = picture->context == NULL ? open_beside(context, &picture->context) : BHR_OK;
+    BhrStatus status = picture->context == NULL ? create_context_beside(adapter, &picture->context) : BHR_OK;
     if (status >= 0) {
-        status = copy_scene(context, scene, picture->context);
+        status = scene_copy(from, picture->context);
+    }
+    if (status >= 0) { /* in the text things that move are as they begin */
+        status = scene_apply(scene, picture->context);
     }
     if (status >= 0) {
         status = bhr_render_image_async(picture->context, &picture->image, &picture->job);
@@ -117,71 +98,218 @@ int picture_begin_numbered(PictureJob *picture, const BhrContext *context, const
     return status >= 0;
 }
 
+/* The job and the saving first: until they have ended the pixels are theirs. */
+static void forget(PictureJob *picture) {
+    worker_take(&picture->saving.worker, 1);
+    bhr_job_destroy(picture->job);
+    picture->job = NULL;
+    free(picture->image.pixels);
+}
+
 PictureEnd picture_poll(PictureJob *picture) {
     if (picture->job == NULL) {
         return PICTURE_NONE;
     }
-    BhrStatus status = bhr_job_wait(picture->job, 0, &picture->fraction);
-    if (status == BHR_NOT_READY) {
-        return PICTURE_RUNNING;
+    BhrStatus status = BHR_OK;
+    if (picture->fraction < 1.0) {
+        status = bhr_job_wait(picture->job, 0, &picture->fraction);
+        if (status == BHR_NOT_READY) {
+            picture->fraction = fmin(picture->fraction, LARGEST_FRACTION);
+            return PICTURE_RUNNING;
+        }
+        if (status >= 0) {
+            picture->fraction = 1.0;
+            snprintf(picture->saving.path, sizeof picture->saving.path, "%s", picture->path);
+            saving_begin(&picture->saving, &picture->image);
+        } else {
+            report_failure("render a picture", status);
+        }
     }
     if (status >= 0) {
-        status = bhr_image_save(&picture->image, picture->path);
+        if (picture->saving.worker.busy && !worker_take(&picture->saving.worker, 0)) {
+            return PICTURE_RUNNING;
+        }
+        status = picture->saving.status;
     }
-    if (status < 0) {
-        report_failure("save a picture", status);
-    } else {
+    if (status >= 0) {
         printf("picture saved: %s, %u x %u\n", picture->path, (unsigned)picture->image.width,
                (unsigned)picture->image.height);
     }
-    picture_cancel(picture);
+    forget(picture);
     return status < 0 ? PICTURE_FAILED : PICTURE_SAVED;
 }
 
 void picture_cancel(PictureJob *picture) {
-    if (picture->job != NULL) {
-        bhr_job_destroy(picture->job);
-        picture->job = NULL;
-        free(picture->image.pixels);
+    if (picture->job == NULL) {
+        return;
+    }
+    if (picture->fraction < 1.0) {
+        printf("picture broken off: %s\n", picture->path);
+        forget(picture);
+        return;
+    }
+    while (picture_poll(picture) == PICTURE_RUNNING) { /* a file is not left half written */
+        worker_take(&picture->saving.worker, 1);
     }
 }
 
 void picture_end(PictureJob *picture) {
     picture_cancel(picture);
+    worker_end(&picture->saving.worker);
     bhr_context_destroy(picture->context);
     picture->context = NULL;
 }
 
-int recorder_start(Recorder *recorder, uint32_t width, uint32_t height) {
-    Recorder fresh = {.running = 1, .width = width, .height = height};
+/* A new folder for a film. 1, or 0 after a message. */
+static int make_film_folder(char folder[FOLDER_NAME]) {
     for (int i = 1; i <= MOST_FILMS; i++) {
-        snprintf(fresh.folder, sizeof fresh.folder, "viewer-film-%02d", i);
-        if (make_folder(fresh.folder)) {
-            *recorder = fresh;
-            printf("recording %u x %u at %g frames per second into %s\n", (unsigned)width, (unsigned)height,
-                   RECORDED_RATE, fresh.folder);
+        snprintf(folder, FOLDER_NAME, "viewer-film-%02d", i);
+        if (make_folder(folder)) {
             return 1;
         }
         if (errno != EEXIST) {
             break;
         }
     }
-    fprintf(stderr, "cannot record: no folder %s: %s\n", fresh.folder, strerror(errno));
+    fprintf(stderr, "cannot record: no folder %s: %s\n", folder, strerror(errno));
     return 0;
 }
 
-void recorder_add(Recorder *recorder, BhrContext *context) {
-    char path[FOLDER_NAME + 32];
-    snprintf(path, sizeof path, "%s/frame-%06u.png", recorder->folder, recorder->frames + 1);
-    if (picture_save(context, recorder->width, recorder->height, path)) {
-        recorder->frames++;
-    } else {
-        recorder_stop(recorder);
+/* The end of a film, whatever has become of it. */
+static void close_film(Recorder *recorder) {
+    worker_end(&recorder->saving.worker);
+    bhr_job_destroy(recorder->job);
+    bhr_context_destroy(recorder->context);
+    free(recorder->images[0].pixels);
+    free(recorder->images[1].pixels);
+    free(recorder->scenes);
+    memset(recorder, 0, sizeof *recorder);
+}
+
+int recorder_start(Recorder *recorder, const BhrAdapterInfo *adapter, const BhrContext *from, uint32_t width,
+                   uint32_t height) {
+    Recorder  fresh = {.taking = 1, .width = width, .height = height};
+    BhrStatus status = create_context_beside(adapter, &fresh.context);
+    if (status >= 0) {
+        status = scene_copy(from, fresh.context);
+    }
+    if (status < 0) {
+        report_failure("begin a film", status);
+    }
+    if (status < 0 || !picture_allocate(&fresh.images[0], BHR_FORMAT_RGBA8_SRGB, width, height) ||
+        !picture_allocate(&fresh.images[1], BHR_FORMAT_RGBA8_SRGB, width, height) || !make_film_folder(fresh.folder)) {
+        close_film(&fresh);
+        return 0;
+    }
+    recorder_cancel(recorder);
+    *recorder = fresh;
+    printf("recording %u x %u at %g frames per second into %s\n", (unsigned)width, (unsigned)height, RECORDED_RATE,
+           fresh.folder);
+    return 1;
+}
+
+void recorder_take(Recorder *recorder, const Scene *scene) {
+    if (!recorder->taking) {
+        return;
+    }
+    if (recorder->taken == recorder->room) {
+        const unsigned room = recorder->room + FRAMES_ROOM;
+        Scene         *scenes = room <= MOST_FRAMES ? realloc(recorder->scenes, room * sizeof *scenes) : NULL;
+        if (scenes == NULL) {
+            fprintf(stderr, "cannot record more than %u frames\n", recorder->taken);
+            recorder_stop(recorder);
+            return;
+        }
+        recorder->scenes = scenes;
+        recorder->room = room;
+    }
+    recorder->scenes[recorder->taken++] = *scene;
+}
+
+void recorder_stop(Recorder *recorder) { recorder->taking = 0; }
+
+/* Takes the end of a frame's saving, if it is there, or waits for it. Errors: as the library's. */
+static BhrStatus take_saved(Recorder *recorder, int wait) {
+    if (recorder->saved == recorder->begun - (recorder->job != NULL ? 1 : 0)) {
+        return BHR_OK; /* none is being saved */
+    }
+    if (recorder->saving.worker.busy && !worker_take(&recorder->saving.worker, wait)) {
+        return BHR_NOT_READY;
+    }
+    recorder->saved += recorder->saving.status >= 0 ? 1 : 0;
+    return recorder->saving.status;
+}
+
+/* Says how many frames there are, and ends the film. */
+static void tell_film(Recorder *recorder) {
+    printf("recorded %u frames in %s", recorder->saved, recorder->folder);
+    if (recorder->saved < recorder->taken) {
+        printf(", of %u: broken off", recorder->taken);
+    }
+    printf("; a film of them: ffmpeg -framerate %g -i %s/frame-%%06d.png film.mp4\n", RECORDED_RATE, recorder->folder);
+    close_film(recorder);
+}
+
+void recorder_cancel(Recorder *recorder) {
+    if (recorder->context != NULL) {
+        take_saved(recorder, 1);
+        tell_film(recorder);
     }
 }
 
-void recorder_stop(Recorder *recorder) {
-    recorder->running = 0;
-    printf("recorded %u frames in %s; a film of them: ffmpeg -framerate %g -i %s/frame-%%06d.png film.mp4\n",
-           recorder->frames, recorder->folder, RECORDED_RATE, recorder->folder);
+/* Begins the next frame, where there is one. */
+static BhrStatus begin_frame(Recorder *recorder) {
+    if (recorder->begun == recorder->taken) {
+        return BHR_OK;
+    }
+    BhrStatus status = scene_apply(&recorder->scenes[recorder->begun], recorder->context);
+    if (status >= 0) {
+        status = bhr_render_image_async(recorder->context, &recorder->images[recorder->begun % 2], &recorder->job);
+    }
+    recorder->begun += status >= 0 ? 1 : 0;
+    return status;
+}
+
+/* Hands the frame that is done to the saving, which must be free. */
+static void save_frame(Recorder *recorder) {
+    bhr_job_destroy(recorder->job);
+    recorder->job = NULL;
+    snprintf(recorder->saving.path, sizeof recorder->saving.path, "%s/frame-%06u.png", recorder->folder,
+             recorder->begun);
+    saving_begin(&recorder->saving, &recorder->images[(recorder->begun - 1) % 2]);
+}
+
+/* One step on, as far as jobs and files are. NOT_READY: there is nothing to do yet. */
+static BhrStatus go_on(Recorder *recorder) {
+    BhrStatus status = take_saved(recorder, 0);
+    if (status != BHR_OK) {
+        return status;
+    }
+    if (recorder->job != NULL) {
+        status = bhr_job_wait(recorder->job, 0, NULL);
+        if (status != BHR_OK) {
+            return status;
+        }
+        save_frame(recorder);
+    }
+    return begin_frame(recorder);
+}
+
+PictureEnd recorder_poll(Recorder *recorder) {
+    if (recorder->context == NULL) {
+        return PICTURE_NONE;
+    }
+    const BhrStatus status = go_on(recorder);
+    if (status < 0) {
+        if (recorder->saving.status >= 0) { /* else it was said */
+            report_failure("render a frame of the film", status);
+        }
+        tell_film(recorder);
+        return PICTURE_FAILED;
+    }
+    if (recorder->taking || recorder->saved < recorder->taken) {
+        return PICTURE_RUNNING;
+    }
+    tell_film(recorder);
+    return PICTURE_SAVED;
 }

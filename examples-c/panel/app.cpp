@@ -24,29 +24,6 @@ constexpr double DEGREES_PER_UNIT = 0.25;     // of a drag
 constexpr double ZOOM_PER_NOTCH = 0.9;
 constexpr double NEAREST = 1.05;              // that zooming goes, in horizon radii
 
-// A window of ImGui's that stays in its place. bare: without border and title.
-class FixedWindow {
-public:
-    FixedWindow(const char *title, const Place &place, bool bare = false) {
-        ImGui::SetNextWindowPos(place.at);
-        ImGui::SetNextWindowSize(place.size);
-        ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                                 ImGuiWindowFlags_NoBringToFrontOnFocus;
-        if (bare) {
-            flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoScrollWithMouse;
-            ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
-            ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-        }
-        ImGui::Begin(title, nullptr, flags);
-        if (bare) {
-            ImGui::PopStyleVar(2);
-        }
-    }
-    ~FixedWindow() { ImGui::End(); }
-    FixedWindow(const FixedWindow &) = delete;
-    FixedWindow &operator=(const FixedWindow &) = delete;
-};
-
 } // namespace
 
 App::App(BhrContext *context, const AppOptions &options)
@@ -80,9 +57,9 @@ int App::run() {
     double last = glfwGetTime(), drawn_at = -1.0, input_at = last;
     bool   stale = true; // the window
     for (;;) {
-        const bool input = window_.wait(queue_.in_flight() > 0 ? POLL_SECONDS
-                                        : stale                ? 0.5 * FASTEST_REDRAW
-                                                               : REDRAW_SECONDS);
+        const bool input = window_.wait(queue_.in_flight() > 0 || comparison_.in_flight() ? POLL_SECONDS
+                                        : stale ? 0.5 * FASTEST_REDRAW
+                                                : REDRAW_SECONDS);
         const double now = glfwGetTime();
         input_at = input ? now : input_at;
         if (!counted()) {
@@ -90,6 +67,7 @@ int App::run() {
         }
         last = now;
         collect_frames(now);
+        stale |= comparison_.collect();
         submit_frames(now);
         if (finished(now)) {
             return save();
@@ -131,6 +109,7 @@ void App::take_picture(FinishedFrame &&frame, double now) {
     error_.clear();
     measure_speed(frame, now);
     finished_at_ = now;
+    auto_ev_ = frame.stats.auto_ev;
     performance_.finished(frame.stats, frame.submitted);
     to_show_ = frame.submitted;
     queue_.reuse(picture_.take(std::move(frame.pixels)));
@@ -189,6 +168,7 @@ void App::submit_picture(double now) {
         return static_cast<uint32_t>(std::max(1L, std::lround(scale * whole)));
     };
     const Wanted wanted{scene_.version(), size(picture_.width()), size(picture_.height())};
+    comparison_.submit(scene_, wanted.width, wanted.height, now);
     while (!lost_ && queue_.has_room() && queue_.in_flight(FrameKind::picture) < frame_settings_.in_flight) {
         const bool changed = wanted.version != submitted_of_.version || wanted.width != submitted_of_.width ||
                              wanted.height != submitted_of_.height;
@@ -288,16 +268,18 @@ void App::draw(double now, Pixels *copy) {
     const uint64_t version = scene_.version();
     const Layout   layout = arrange(ImGui::GetIO().DisplaySize, ImGui::GetFontSize(), options_.bare != 0);
     Picture::Input input;
+    sections_.clear();
     history_.before(scene_, ImGui::IsAnyItemActive() || ImGui::IsAnyMouseDown(), now);
     files_.key(window_.shortcut(), scene_, history_);
     {
         char              news[96];
-        const FixedWindow window("Picture", layout.picture, true);
+        const FixedWindow window(sections_, "Picture", layout.picture, true);
         const BhrImage   &image = picture_.pixels().image;
         const double rate = performance_.frames_per_second();
         std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
                       rate);
-        input = picture_.draw(window_.pixel_ratio(), options_.bare != 0, news, error_);
+        input = picture_.draw(window_.pixel_ratio(), options_.bare != 0, news, error_,
+                              comparison_.shown() && options_.bare == 0 ? &comparison_.picture() : nullptr);
     }
     move_camera(input);
     if (picture_.width() > 0 && !options_.bare) {
@@ -322,34 +304,89 @@ void App::draw(double now, Pixels *copy) {
 
 void App::draw_panels(const Layout &layout) {
     {
-        const FixedWindow window("Scene", layout.settings);
+        const FixedWindow window(sections_, "Scene", layout.settings);
         files_.draw(scene_, history_);
-        settings_.draw(scene_, inspector_.numbers(), frame_settings_, clock_);
+        comparison_.draw(scene_, adapter_);
+        settings_.draw(scene_, inspector_.numbers(), frame_settings_, clock_, sections_,
+                       [&] { light_scope_.draw(picture_.pixels(), pictures_, auto_ev_, scene_.film()); });
     }
+    if (layout.wide) {
+        draw_instruments(layout);
+    } else {
+        draw_instrument_tabs(layout);
+    }
+}
+
+// All side by side, in windows of their own.
+void App::draw_instruments(const Layout &layout) {
     {
-        const FixedWindow window("Ray, from the side", layout.side);
+        const FixedWindow window(sections_, "Ray, from the side", layout.side);
         ray_panel_.draw_side(ray_, inspector_);
     }
     {
-        const FixedWindow window("Ray, from above", layout.top);
+        const FixedWindow window(sections_, "Ray, from above", layout.top);
         ray_panel_.draw_top(ray_, inspector_);
     }
     {
-        const FixedWindow window("g_tt", layout.metric);
+        const FixedWindow window(sections_, "g_tt", layout.metric);
         metric_map_.draw(inspector_, scene_.geometry_version());
     }
     {
-        const FixedWindow window("Performance", layout.performance);
+        const FixedWindow window(sections_, "Performance", layout.performance);
         performance_.draw(adapter_, queue_.in_flight(), recoveries_);
     }
     {
-        const FixedWindow window("Ray", layout.ray);
+        const FixedWindow window(sections_, "Ray", layout.ray);
         ray_panel_.draw_numbers(ray_, inspector_, ray_column_, ray_row_);
     }
     {
-        const FixedWindow window("Integration steps", layout.steps);
+        const FixedWindow window(sections_, "Integration steps", layout.steps);
         steps_plot_.draw(scene_, picture_.column(), picture_.width());
     }
+}
+
+// A ray's two views, and its numbers with the rest of the room.
+void App::draw_ray_views(ImVec2 room) {
+    const float space = ImGui::GetStyle().ItemSpacing.x, view = std::floor(0.32F * room.x);
+    {
+        const Part part(sections_, "Ray, from the side", {view, room.y});
+        ray_panel_.draw_side(ray_, inspector_);
+    }
+    ImGui::SameLine();
+    {
+        const Part part(sections_, "Ray, from above", {view, room.y});
+        ray_panel_.draw_top(ray_, inspector_);
+    }
+    ImGui::SameLine();
+    const Part part(sections_, "Ray", {room.x - 2.0F * (view + space), room.y});
+    ray_panel_.draw_numbers(ray_, inspector_, ray_column_, ray_row_);
+}
+
+// They share one window, behind tabs.
+void App::draw_instrument_tabs(const Layout &layout) {
+    const FixedWindow window(sections_, "Instruments", layout.instruments);
+    if (!ImGui::BeginTabBar("instruments")) {
+        return;
+    }
+    const auto tab = [&](const char *name, const std::function<void()> &content) {
+        const bool chosen = ImGui::BeginTabItem(name);
+        settings_.mark_tab("instruments", name);
+        if (chosen) {
+            content();
+            ImGui::EndTabItem();
+        }
+    };
+    const auto whole = [&](const char *name, const std::function<void()> &content) {
+        tab(name, [&] {
+            const Part part(sections_, name, {0.0F, 0.0F});
+            content();
+        });
+    };
+    tab("Ray", [&] { draw_ray_views(ImGui::GetContentRegionAvail()); });
+    whole("g_tt", [&] { metric_map_.draw(inspector_, scene_.geometry_version()); });
+    whole("Steps", [&] { steps_plot_.draw(scene_, picture_.column(), picture_.width()); });
+    whole("Performance", [&] { performance_.draw(adapter_, queue_.in_flight(), recoveries_); });
+    ImGui::EndTabBar();
 }
 
 // Dragging moves the camera about the hole as if the hole were turned by the hand; the wheel goes nearer and away.
@@ -455,8 +492,44 @@ void App::say(const Picture::Input &input) {
                     fate_name(ray_.hit.fate), ray_.deflection / DEGREE, ray_.hit.crossing_count, ray_.hit.steps,
                     ray_.path.size());
     }
+    if (comparison_.count() != said_compared_) {
+        std::printf("compared %u\n", comparison_.count());
+        said_compared_ = comparison_.count();
+    }
+    if (picture_.wipe() != said_wipe_) {
+        std::printf("wipe %.3f\n", static_cast<double>(picture_.wipe()));
+        said_wipe_ = picture_.wipe();
+    }
+    if (light_scope_.number() != said_light_) {
+        std::printf("light above %d: %.4f auto %.4f\n", LightCounts::BRIGHT, light_scope_.counts().bright(), auto_ev_);
+        said_light_ = light_scope_.number();
+    }
+    say_places();
     if (pictures_ != said_pictures_) {
         std::printf("frames %u\n", pictures_);
         said_pictures_ = pictures_;
+    }
+}
+
+// The sections, with what of them is hidden, and the widgets that can be seen, where any of them has changed.
+void App::say_places() {
+    std::string text;
+    char        line[160];
+    const auto  whole = [](float value) { return static_cast<double>(value); };
+    for (const SectionReport &one : sections_) {
+        std::snprintf(line, sizeof line, "section %.0f %.0f %.0f %.0f hidden %.0f %.0f bar %d %s\n", whole(one.at.x),
+                      whole(one.at.y), whole(one.size.x), whole(one.size.y), whole(one.hidden.x), whole(one.hidden.y),
+                      one.bar ? 1 : 0, one.name.c_str());
+        text += line;
+    }
+    for (const auto *places : {&comparison_.places(), &settings_.places()}) {
+        for (const auto &[name, place] : *places) {
+            std::snprintf(line, sizeof line, "widget %.0f %.0f %s\n", whole(place.x), whole(place.y), name.c_str());
+            text += line;
+        }
+    }
+    if (text != said_places_) {
+        std::printf("places\n%s", text.c_str());
+        said_places_ = text;
     }
 }

@@ -4,9 +4,11 @@
 #ifndef PANEL_APP_H
 #define PANEL_APP_H
 
+#include "comparison.h"
 #include "files.h"
 #include "inspector.h"
 #include "layout.h"
+#include "light_scope.h"
 #include "metric_map.h"
 #include "performance.h"
 #include "picture.h"
@@ -19,7 +21,7 @@
 #include <string>
 
 struct AppOptions {
-    uint32_t    size[2] = {1600, 1000};
+    uint32_t    size[2] = {0, 0}; // 0: what the screen holds of 1600 x 1000
     uint32_t    frames = 0;   // to show before the program ends; 0: no such end
     double      hold = -1.0;  // seconds to stay open, after those frames if there are some; < 0: until closed
     const char *screenshot = nullptr, *picture = nullptr; // files to write at the end
@@ -62,11 +64,15 @@ private:
     void   inspect();
     void   draw(double now, Pixels *copy);
     void   draw_panels(const Layout &layout);
+    void   draw_instruments(const Layout &layout);
+    void   draw_instrument_tabs(const Layout &layout);
+    void   draw_ray_views(ImVec2 room);
     void   move_camera(const Picture::Input &input);
     bool   counted_out(double now) const;
     bool   finished(double now);
     int    save();
     void   say(const Picture::Input &input);
+    void   say_places();
 
     AppOptions  options_;
     BhrContext *context_;
@@ -77,6 +83,8 @@ private:
     Inspector      inspector_;
     BhrAdapterInfo adapter_{};
     Picture        picture_;
+    Comparison     comparison_;
+    LightScope     light_scope_;
     SettingsPanel  settings_;
     History        history_;
     FilesRow       files_;
@@ -102,12 +110,18 @@ private:
     double      finished_at_ = -1e9;  // last picture
     double      seconds_per_pixel_ = 0.0;
     double      hold_until_ = -1.0; // < 0: not yet holding
+    double      auto_ev_ = 0.0;     // of the last picture
+
+    SectionReports sections_; // of the window as it was drawn last
 
     Wanted   said_place_; // what --verbose said last
     uint64_t said_geometry_ = 0;
     size_t   said_refusals_ = 0, said_files_ = 0;
     size_t   said_volumes_ = 0, said_spots_ = 0;
-    uint32_t said_pictures_ = 0;
+    uint32_t said_pictures_ = 0, said_light_ = 0;
+    unsigned said_compared_ = 0;
+    float    said_wipe_ = 0.5F;
+    std::string said_places_;
 };
 
 #endif

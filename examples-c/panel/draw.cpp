@@ -75,7 +75,10 @@ void Diagram::grid(double step, ImU32 numbers) const {
     for (double x = std::ceil(left_ / step) * step; x <= right_; x += step) {
         line(x, bottom_, x, top_, colour::axis, 1.0F);
         std::snprintf(text, sizeof text, "%g", std::abs(x) < 1e-9 * step ? 0.0 : x);
-        label({at(x, 0.0).x + 2.0F, high_.y - ImGui::GetFontSize() - 1.0F}, numbers, text);
+        const float left = at(x, 0.0).x + 2.0F;
+        if (left + ImGui::CalcTextSize(text).x <= high_.x) { // half a number would be another one
+            label({left, high_.y - ImGui::GetFontSize() - 1.0F}, numbers, text);
+        }
     }
     for (double y = std::ceil(bottom_ / step) * step; y <= top_; y += step) {
         line(left_, y, right_, y, colour::axis, 1.0F);

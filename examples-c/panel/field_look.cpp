@@ -31,17 +31,58 @@ const struct {
     {SKY_FIELDS, "--stars-brightness", "starlight", 0.0, nullptr},
     {SKY_FIELDS, "--map-brightness", "map's light", 0.0, nullptr},
     {FILM_FIELDS, "--exposure-ev", "exposure", 0.0, nullptr},
+    {FILM_FIELDS, "--auto-percentile", "percentile", 0.0, nullptr},
+    {FILM_FIELDS, "--auto-target", "its target", 0.0, nullptr},
+    {FILM_FIELDS, "--auto-least-ev", "at least", 0.0, nullptr},
+    {FILM_FIELDS, "--auto-most-ev", "at most", 0.0, nullptr},
+    {FILM_FIELDS, "--auto-adaptation", "adaptation", 0.0, nullptr},
     {FILM_FIELDS, "--beam-fwhm", "beam", 0.0, nullptr},
     {FILM_FIELDS, "--white-balance", "white", 0.0, "off"},
     {FILM_FIELDS, "--shoulder-strength", "shoulder", 0.0, nullptr},
     {FILM_FIELDS, "--shoulder-length", "its length", 0.0, nullptr},
     {FILM_FIELDS, "--shoulder-angle", "its angle", 0.0, nullptr},
-    {FILM_FIELDS, "--lut-strength", "LUT", 0.0, nullptr},
+    {FILM_FIELDS, "--lut-strength", "LUT's share", 0.0, nullptr},
     {QUALITY_FIELDS, "--samples-per-pixel", "samples", 0.0, nullptr},
     {QUALITY_FIELDS, "--max-disk-order", "disk images", 0.0, nullptr},
     {QUALITY_FIELDS, "--volume-resolution", "deep matter", 0.0, nullptr},
     {QUALITY_FIELDS, "--step", nullptr, 0.0, "default"},
     {QUALITY_FIELDS, "--tolerance", nullptr, 0.0, "default"},
+};
+
+// The structs of the lists, with the pages that explain them.
+const struct {
+    const Field *list;
+    const char  *name, *page;
+} STRUCTS[] = {
+    {DISK_FIELDS, "BhrDisk", "docs/physics.md"},
+    {VOLUME_FIELDS, "BhrVolume", "docs/matter.md"},
+    {HOT_SPOT_FIELDS, "BhrHotSpot", "docs/matter.md"},
+    {SKY_FIELDS, "BhrSky", "docs/maps.md"},
+    {FILM_FIELDS, "BhrFilm", "docs/colour-and-film.md"},
+    {QUALITY_FIELDS, "BhrQuality", "docs/quality.md"},
+};
+
+// The literature that these pages name.
+const struct {
+    const Field *list;
+    const char  *option, *source;
+} SOURCES[] = {
+    {DISK_FIELDS, "--temperature", "the flux: Page and Thorne 1974; its colour: CIE 1931"},
+    {FILM_FIELDS, "--tone-map",
+     "ACES 1.0, fit of S. Hill 2015; AgX: T. Sobotka 2022; filmic: J. Hable 2017"},
+    {FILM_FIELDS, "--bloom", "the eye's glare: Spencer et al., SIGGRAPH 1995"},
+    {FILM_FIELDS, "--white-balance", "CIE 1931; Bradford's adaptation: K. M. Lam 1985"},
+    {FILM_FIELDS, "--tint", "Duv: Y. Ohno, LEUKOS 10, 2014"},
+    {FILM_FIELDS, "--saturation", "ASC CDL v1.2, 2009"},
+    {FILM_FIELDS, "--toe-strength", "J. Hable 2017"},
+    {FILM_FIELDS, "--toe-length", "J. Hable 2017"},
+    {FILM_FIELDS, "--shoulder-strength", "J. Hable 2017"},
+    {FILM_FIELDS, "--shoulder-length", "J. Hable 2017"},
+    {FILM_FIELDS, "--shoulder-angle", "J. Hable 2017"},
+    {FILM_FIELDS, "--highlights", "Durand and Dorsey, SIGGRAPH 2002; Chen, Paris and Durand, SIGGRAPH 2007"},
+    {FILM_FIELDS, "--shadows", "Durand and Dorsey, SIGGRAPH 2002; Chen, Paris and Durand, SIGGRAPH 2007"},
+    {FILM_FIELDS, "--lut-strength", "Cube LUT Specification 1.0, Adobe; tetrahedral: Kasson et al. 1995"},
+    {QUALITY_FIELDS, "--method", "Nystrom 1925; Hairer, Norsett and Wanner"},
 };
 
 const auto *special(const Field *list, const Field &field) {
@@ -115,4 +156,31 @@ FieldLook look_of(const Field *list, const Field &field, double by_default, doub
         look.format += " M";
     }
     return look;
+}
+
+std::string tip_of(const Field *list, const Field &field) {
+    const std::string about = field.about;
+    std::string       tip = about;
+    if (field.kind == OPTION_DEGREES) {
+        tip += "\nunit: degrees; in bhr.h radians";
+    } else if (field.unit != nullptr) {
+        tip += std::string("\nunit: ") + field.unit;
+    }
+    if (field.range != nullptr && about.find(field.range) == std::string::npos) {
+        tip += std::string("\nrange: ") + field.range;
+    }
+    for (const auto &row : STRUCTS) {
+        if (row.list == list) {
+            std::string name = FIELD_NAME(&field);
+            std::replace(name.begin(), name.end(), '-', '_');
+            tip += std::string("\n\n") + row.name + (field.kind == OPTION_BIT ? ".flags" : "." + name) + " in bhr.h; " +
+                   row.page;
+        }
+    }
+    for (const auto &row : SOURCES) {
+        if (row.list == list && std::strcmp(row.option, field.option) == 0) {
+            tip += std::string("\n") + row.source;
+        }
+    }
+    return tip;
 }

@@ -23,6 +23,10 @@ FieldLook look_of(const Field *list, const Field &field, double by_default, doub
 // The label of a field that is no number, and of one bit.
 std::string label_of(const Field *list, const Field &field);
 
+// All that a tip says of a field: its meaning, unit and range, its place in bhr.h, the page that explains it, and where
+// it comes from.
+std::string tip_of(const Field *list, const Field &field);
+
 // A name of fields.c as a label: blanks for dashes.
 std::string as_label(const char *name);
 

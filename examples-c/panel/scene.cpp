@@ -2,6 +2,8 @@
 // scene.cpp -- see scene.h.
 #include "scene.h"
 
+#include <algorithm>
+
 Result Scene::begin(BhrPreset preset, BhrPresetMatter matter) {
     preset_options_ = with_defaults(bhr_preset_options_init);
     preset_options_.matter = matter;
@@ -51,6 +53,9 @@ void Scene::read_back() {
     film_ = sized<BhrFilm>();
     bhr_get_film(context_, &film_);
     bhr_get_effects(context_, &effects_);
+    for (size_t i = 0; i < std::size(GRADED_EFFECTS); i++) {
+        bhr_get_effect_strength(context_, GRADED_EFFECTS[i], &effect_strengths_[i]);
+    }
     quality_ = sized<BhrQuality>();
     bhr_get_quality(context_, &quality_);
 }
@@ -143,6 +148,25 @@ Result Scene::set_effects(uint32_t effects) {
     return result;
 }
 
+double Scene::effect_strength(uint32_t effect) const {
+    const auto *found = std::find(std::begin(GRADED_EFFECTS), std::end(GRADED_EFFECTS), effect);
+    return found == std::end(GRADED_EFFECTS) ? 1.0 : effect_strengths_[found - std::begin(GRADED_EFFECTS)];
+}
+
+Result Scene::set_effect_strength(uint32_t effect, double strength) {
+    return accepted(bhr_set_effect_strength(context_, effect, strength), false);
+}
+
+Result Scene::set_lut_file(const char *path) {
+    const bool   none = path[0] == '\0';
+    const Result result = accepted(none ? bhr_set_film_lut(context_, nullptr, 0, 0)
+                                        : bhr_set_film_lut_file(context_, path), false);
+    if (result.ok()) {
+        lut_path_ = path;
+    }
+    return result;
+}
+
 Result Scene::set_time(double time) {
     const Result result = accepted(bhr_set_time(context_, time), false);
     if (result.ok()) {
@@ -202,6 +226,7 @@ Result Scene::loaded(BhrStatus status) {
         bhr_get_view(context_, &view_);
         bhr_get_time(context_, &time_);
         preset_ = NO_PRESET;
+        lut_path_.clear(); // the text's is in force, whose path no call tells
     }
     return result;
 }

@@ -7,6 +7,7 @@
 #include "handles.h"
 #include "vec.h"
 
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Hole {
 };
 
 constexpr BhrPreset NO_PRESET = -1;
+
+// The effects that have strengths.
+constexpr uint32_t GRADED_EFFECTS[] = {BHR_EFFECT_DOPPLER_SHIFT, BHR_EFFECT_GRAVITY_SHIFT, BHR_EFFECT_BEAMING};
 
 class Scene {
 public:
@@ -43,6 +47,8 @@ public:
     const BhrQuality &quality() const { return quality_; }
     BhrView           view() const { return view_; }
     uint32_t          effects() const { return effects_; }
+    double            effect_strength(uint32_t effect) const; // of one of GRADED_EFFECTS
+    const std::string &lut_path() const { return lut_path_; } // "": none that was set here
     double            time() const { return time_; }
     Chart             chart() const { return Chart(hole_.axis); }
 
@@ -68,6 +74,8 @@ public:
     BhrPresetMatter chosen_matter() const { return chosen_matter_; }
     Result set_view(BhrView view);
     Result set_effects(uint32_t effects);
+    Result set_effect_strength(uint32_t effect, double strength);
+    Result set_lut_file(const char *path); // "": none
     Result set_time(double time);
 
     // Moves the camera along its world line, and the scene's time with it.
@@ -100,6 +108,8 @@ private:
     BhrQuality  quality_{};
     BhrView     view_ = BHR_VIEW_LIGHT;
     uint32_t    effects_ = BHR_EFFECT_ALL;
+    double      effect_strengths_[std::size(GRADED_EFFECTS)] = {1.0, 1.0, 1.0};
+    std::string lut_path_;
     double      time_ = 0.0;
     uint64_t    version_ = 0, geometry_version_ = 0;
 };

@@ -1,54 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// settings.cpp -- see settings.h.
+// settings.cpp -- see settings.h; the film's settings are in film_settings.cpp.
 #include "settings.h"
 
 #include "../matter.h"
-#include "draw.h"
-#include "field_look.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <imgui.h>
 
 namespace {
-
-constexpr float LABEL_EMS = 6.6F; // the width of the labels' column
-
-// Says what the last widget is for, where the mouse rests on it. NULL: it needs no words.
-void tell(const char *about) {
-    if (about != nullptr && ImGui::IsItemHovered()) {
-        ImGui::BeginTooltip();
-        ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
-        ImGui::TextUnformatted(about);
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
-    }
-}
-
-// A row's label; the widget goes on beside it with the rest of the line.
-void begin_row(const char *label, const char *about) {
-    ImGui::PushID(label);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(label);
-    tell(about);
-    ImGui::SameLine(LABEL_EMS * ImGui::GetFontSize());
-    ImGui::SetNextItemWidth(-1.0F);
-}
-
-// Two numbers a row.
-void fact(const char *name, double value, const char *format, bool left) {
-    if (!left) {
-        ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-    }
-    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(colour::dim), "%s", name);
-    ImGui::SameLine(0.0F, 0.4F * ImGui::GetFontSize());
-    if (std::isnan(value)) {
-        ImGui::TextUnformatted("-");
-    } else {
-        ImGui::Text(format, value);
-    }
-}
 
 bool every_field(const Field &) {
     return true;
@@ -56,209 +15,20 @@ bool every_field(const Field &) {
 
 } // namespace
 
-void SettingsPanel::report(const char *section, const char *widget, const std::string &message) {
-    const std::string key = std::string(section) + "/" + widget;
-    if (message.empty()) {
-        messages_.erase(key);
-        refused_.erase(key);
-    } else if (messages_[key] != message) {
-        messages_[key] = last_refusal_ = message;
-        refusals_++;
-    }
-}
-
-void SettingsPanel::show_message(const char *label) {
-    const auto found = messages_.find(std::string(section_) + "/" + label);
-    if (found == messages_.end()) {
-        return;
-    }
-    ImGui::PushStyleColor(ImGuiCol_Text, colour::error);
-    ImGui::TextWrapped("%s", found->second.c_str());
-    ImGui::PopStyleColor();
-}
-
-bool SettingsPanel::section(const char *name, bool open) {
-    section_ = name;
-    return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
-}
-
-// ImGui offers a number that is being typed anew with every frame, as long as it is not the one in force: what was
-// refused is not asked for again.
-template <class Set> void SettingsPanel::try_number(const char *label, double value, Set set) {
-    const std::string key = std::string(section_) + "/" + label;
-    if (const auto found = refused_.find(key); found != refused_.end() && found->second == value) {
-        return;
-    }
-    const Result result = set();
-    report(section_, label, result.message);
-    if (!result.ok()) {
-        refused_[key] = value;
-    }
-}
-
-// low and high bound the slider only: with Ctrl and a click any number can be typed, and the library judges it.
-template <class Set>
-void SettingsPanel::number(const char *label, double value, double low, double high, const char *format,
-                           bool logarithmic, Set set, const char *about) {
-    begin_row(label, about);
-    const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-    if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format, flags)) {
-        try_number(label, value, [&] { return set(value); });
-    }
-    ImGui::PopID();
-    show_message(label);
-}
-
-template <class Set>
-void SettingsPanel::whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set,
-                          const char *about) {
-    begin_row(label, about);
-    const ImGuiSliderFlags flags = high > 100 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-    if (ImGui::SliderScalar("##value", ImGuiDataType_U32, &value, &low, &high, "%u", flags)) {
-        try_number(label, value, [&] { return set(value); });
-    }
-    ImGui::PopID();
-    show_message(label);
-}
-
-template <class Set>
-void SettingsPanel::vector(const char *label, const double value[3], Set set, const char *about) {
-    double edited[3] = {value[0], value[1], value[2]};
-    begin_row(label, about);
-    if (ImGui::DragScalarN("##value", ImGuiDataType_Double, edited, 3, 0.005F, nullptr, nullptr, "%.3f")) {
-        report(section_, label, set(edited).message);
-    }
-    ImGui::PopID();
-    show_message(label);
-}
-
-// A value that is none of the choices shows nothing.
-template <class Set>
-void SettingsPanel::choice(const char *label, int32_t value, const Choice *choices, Set set, const char *about) {
-    const Choice *chosen = choices;
-    while (chosen->name != nullptr && chosen->value != value) {
-        chosen++;
-    }
-    begin_row(label, about);
-    if (ImGui::BeginCombo("##value", chosen->name != nullptr ? as_label(chosen->name).c_str() : "")) {
-        for (; choices->name != nullptr; choices++) {
-            if (ImGui::Selectable(as_label(choices->name).c_str(), choices->value == value)) {
-                report(section_, label, set(choices->value).message);
-            }
-        }
-        ImGui::EndCombo();
-    }
-    ImGui::PopID();
-    show_message(label);
-}
-
-template <class Set> void SettingsPanel::flag(const char *label, uint32_t flags, uint32_t bit, Set set) {
-    if (ImGui::CheckboxFlags(label, &flags, bit)) {
-        report(section_, label, set(flags).message);
-    }
-}
-
-// A widget for each field of a struct that `shown` is true for. defaults: such a struct as the library begins it.
-template <class Struct, class Set, class Shown>
-void SettingsPanel::fields(const Field *list, Struct &value, const Struct &defaults, Set set, Shown shown) {
-    const auto at = [](const auto &object, const Field &field) {
-        return reinterpret_cast<const char *>(&object) + field.offset;
-    };
-    for (const Field *field = list; field->option != nullptr; field++) {
-        if (shown(*field)) {
-            char *target = reinterpret_cast<char *>(&value) + field->offset;
-            this->field(list, *field, target, at(defaults, *field), set);
-        }
-    }
-}
-
-// Assigns, and asks for the struct that has the new value.
-template <class Set>
-void SettingsPanel::field(const Field *list, const Field &field, char *target, const char *by_default, Set set) {
-    const std::string label = label_of(list, field);
-    const auto        assign = [&](auto value) {
-        *reinterpret_cast<decltype(value) *>(target) = value;
-        return set();
-    };
-    switch (field.kind) {
-    case OPTION_BIT: {
-        const uint32_t flags = *reinterpret_cast<const uint32_t *>(target);
-        // Two in a row; the bits of a struct come first.
-        if ((&field - list) % 2 == 1) {
-            ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-        }
-        flag(label.c_str(), flags, static_cast<uint32_t>(field.choices->value), assign);
-        tell(field.about);
-        for (const Field *bit = list; (&field)[1].kind != OPTION_BIT && bit <= &field; bit++) {
-            show_message(label_of(list, *bit).c_str()); // below the last of them
-        }
-        break;
-    }
-    case OPTION_BITS:
-        bits(*reinterpret_cast<const uint32_t *>(target), field.choices, assign);
-        break;
-    case OPTION_CHOICE:
-        choice(label.c_str(), *reinterpret_cast<const int32_t *>(target), field.choices, assign, field.about);
-        break;
-    case OPTION_UINT:
-        whole(label.c_str(), *reinterpret_cast<const uint32_t *>(target), static_cast<uint32_t>(field.low),
-              static_cast<uint32_t>(field.high), assign, field.about);
-        break;
-    case OPTION_UINT64:
-        seed(label.c_str(), *reinterpret_cast<const uint64_t *>(target), assign, field.about);
-        break;
-    case OPTION_VECTOR:
-        vector(label.c_str(), reinterpret_cast<const double *>(target), [&](const double edited[3]) {
-            std::copy(edited, edited + 3, reinterpret_cast<double *>(target));
-            return set();
-        }, field.about);
-        break;
-    case OPTION_DOUBLE:
-    case OPTION_DEGREES: {
-        const double    now = *reinterpret_cast<const double *>(target);
-        const FieldLook look = look_of(list, field, *reinterpret_cast<const double *>(by_default), now);
-        number(look.label.c_str(), now / look.unit, look.low, look.high, look.format.c_str(), look.logarithmic,
-               [&](double shown) { return assign(shown * look.unit); }, field.about);
-        break;
-    }
-    default:
-        break; // pairs and fours have no widget
-    }
-}
-
-// A check box for each bit, three in a row.
-template <class Set> void SettingsPanel::bits(uint32_t flags, const Choice *choices, Set set) {
-    for (const Choice *part = choices; part->name != nullptr; part++) {
-        const auto column = (part - choices) % 3;
-        if (column != 0) {
-            ImGui::SameLine(static_cast<float>(column) * LABEL_EMS * ImGui::GetFontSize());
-        }
-        flag(as_label(part->name).c_str(), flags, static_cast<uint32_t>(part->value), set);
-    }
-    for (const Choice *part = choices; part->name != nullptr; part++) {
-        show_message(as_label(part->name).c_str());
-    }
-}
-
-template <class Set>
-void SettingsPanel::seed(const char *label, uint64_t value, Set set, const char *about) {
-    begin_row(label, about);
-    constexpr uint64_t one = 1;
-    if (ImGui::InputScalar("##value", ImGuiDataType_U64, &value, &one)) {
-        report(section_, label, set(value).message);
-    }
-    ImGui::PopID();
-    show_message(label);
-}
-
 void SettingsPanel::hole(Scene &scene, const BhrHoleInfo &numbers) {
     if (!section("Hole", true)) {
         return;
     }
     const Hole &now = scene.hole();
-    number("mass M", now.mass, 0.05, 20.0, "%.3f", true, [&](double mass) { return scene.set_mass(mass); });
-    number("spin a / M", now.spin, -0.999, 0.999, "%.3f", false, [&](double spin) { return scene.set_spin(spin); });
-    vector("axis", now.axis, [&](const double axis[3]) { return scene.set_axis(axis); });
+    number("mass M", now.mass, 0.05, 20.0, "%.3f", true, [&](double mass) { return scene.set_mass(mass); },
+           "the hole's mass, as a length: G M / c^2\nunit: scene lengths, the chart's\n\nbhr_set_mass in bhr.h");
+    number("spin a / M", now.spin, -0.999, 0.999, "%.3f", false, [&](double spin) { return scene.set_spin(spin); },
+           "the angular momentum a, over M; 0: Schwarzschild's metric, else Kerr's\nrange: -0.9999 .. 0.9999\n\n"
+           "bhr_set_spin in bhr.h; docs/physics.md\nR. P. Kerr 1963; a disk's own light keeps it at 0.998 or below: "
+           "K. S. Thorne 1974");
+    vector("axis", now.axis, [&](const double *axis) { return scene.set_axis(axis); },
+           "the direction of the spin, in scene axes, of any length\n\nbhr_set_axis in bhr.h");
+    ImGui::BeginGroup();
     fact("horizon", numbers.horizon_radius, "%.4f", true);
     fact("ergosphere", numbers.ergosphere_equatorial_radius, "%.4f", false);
     fact("photon +", numbers.photon_orbit_prograde, "%.4f", true);
@@ -267,6 +37,11 @@ void SettingsPanel::hole(Scene &scene, const BhrHoleInfo &numbers) {
     fact("ISCO -", numbers.isco_retrograde, "%.4f", false);
     fact("critical b", numbers.critical_impact_parameter, "%.4f", true);
     fact("shadow", numbers.shadow_angular_radius / DEGREE, "%.3f\xC2\xB0", false);
+    ImGui::EndGroup();
+    tell("radii in the equatorial plane: the horizon, the ergosphere's edge, circular orbits of light and the "
+         "innermost stable ones of matter, + with the spin and - against it; without spin also the critical impact "
+         "parameter and the shadow's angular radius\nunit: scene lengths\n\nBhrHoleInfo in bhr.h\n"
+         "Bardeen, Press and Teukolsky 1972; the shadow: J. L. Synge 1966");
 }
 
 void SettingsPanel::camera(Scene &scene, const BhrHoleInfo &numbers) {
@@ -275,25 +50,33 @@ void SettingsPanel::camera(Scene &scene, const BhrHoleInfo &numbers) {
     }
     const Orbit orbit = scene.orbit();
     number("distance", orbit.distance, 1.0, 500.0, "%.3f", true,
-           [&](double distance) { return scene.set_orbit({distance, orbit.azimuth, orbit.elevation}); });
+           [&](double distance) { return scene.set_orbit({distance, orbit.azimuth, orbit.elevation}); },
+           "from the hole's centre, in the chart\nunit: scene lengths\n\nbhr_camera_orbit in bhr.h; docs/cameras.md");
     number("azimuth", orbit.azimuth / DEGREE, -180.0, 180.0, "%.2f\xC2\xB0", false,
-           [&](double degrees) { return scene.set_orbit({orbit.distance, degrees * DEGREE, orbit.elevation}); });
+           [&](double degrees) { return scene.set_orbit({orbit.distance, degrees * DEGREE, orbit.elevation}); },
+           "about scene z, from scene x\nunit: degrees; in bhr.h radians\n\n"
+           "bhr_camera_orbit in bhr.h; docs/cameras.md");
     number("elevation", orbit.elevation / DEGREE, -90.0, 90.0, "%.2f\xC2\xB0", false,
-           [&](double degrees) { return scene.set_orbit({orbit.distance, orbit.azimuth, degrees * DEGREE}); });
+           [&](double degrees) { return scene.set_orbit({orbit.distance, orbit.azimuth, degrees * DEGREE}); },
+           "above the scene's x-y plane\nunit: degrees; in bhr.h radians\n\n"
+           "bhr_camera_orbit in bhr.h; docs/cameras.md");
     BhrCamera camera = scene.camera();
     number("field of view", camera.fov_y / DEGREE, 1.0, 170.0, "%.1f\xC2\xB0", false, [&](double degrees) {
         camera.fov_y = degrees * DEGREE;
         return scene.set_camera(camera);
-    });
+    }, "from the picture's lower edge to its upper one\nunit: degrees; in bhr.h radians\n\n"
+       "BhrCamera.fov_y in bhr.h; docs/cameras.md");
     choice("motion", camera.motion, MOTIONS, [&](int32_t motion) {
         camera.motion = motion;
         return scene.set_camera(camera);
-    });
+    }, "how the observer moves: aberration and the Doppler shift follow from it\n\n"
+       "BhrCamera.motion in bhr.h; docs/cameras.md");
     if (camera.motion == BHR_MOTION_VELOCITY) {
-        vector("velocity / c", camera.velocity, [&](const double velocity[3]) {
+        vector("velocity / c", camera.velocity, [&](const double *velocity) {
             std::copy(velocity, velocity + 3, camera.velocity);
             return scene.set_camera(camera);
-        });
+        }, "against the observer at rest there, in scene axes\nunit: c\nrange: below 1\n\n"
+           "BhrCamera.velocity in bhr.h; docs/cameras.md");
     }
     fact("r", numbers.camera_radius, "%.4f", true);
     fact("d tau / d t", numbers.camera_time_rate, "%.6f", false);
@@ -306,13 +89,14 @@ void SettingsPanel::disk(Scene &scene) {
     BhrDisk disk = scene.disk();
     bool    present = scene.has_disk();
     if (ImGui::Checkbox("disk", &present)) {
-        report(section_, "disk", scene.set_disk(present ? &disk : nullptr).message);
+        report("Disk", "disk", scene.set_disk(present ? &disk : nullptr).message);
     }
     show_message("disk");
     if (!present) {
         return;
     }
-    fields(DISK_FIELDS, disk, with_defaults(bhr_disk_init), [&] { return scene.set_disk(&disk); }, every_field);
+    const BhrDisk defaults = with_defaults(bhr_disk_init);
+    fields(DISK_FIELDS, &disk, &defaults, [&] { return scene.set_disk(&disk); }, every_field);
 }
 
 void SettingsPanel::volume(Scene &scene, size_t index) {
@@ -328,9 +112,10 @@ void SettingsPanel::volume(Scene &scene, size_t index) {
     choice("shape", volume.shape, VOLUME_KINDS, [&](int32_t shape) {
         const Result begun = result_of(volume_begin(&volume, shape));
         return begun.ok() ? set() : begun;
-    });
-    fields(VOLUME_FIELDS, volume, with_defaults(bhr_volume_init), set,
-           [](const Field &field) { return field.choices != VOLUME_KINDS; });
+    }, "the place of the volume's matter; another shape begins with values that suit it\n\n"
+       "BhrVolume.shape in bhr.h; docs/matter.md");
+    const BhrVolume defaults = with_defaults(bhr_volume_init);
+    fields(VOLUME_FIELDS, &volume, &defaults, set, [](const Field &field) { return field.choices != VOLUME_KINDS; });
     ImGui::PopID();
 }
 
@@ -343,8 +128,8 @@ void SettingsPanel::hot_spot(Scene &scene, size_t index) {
     ImGui::PushID(names[index]);
     std::vector<BhrHotSpot> spots = scene.hot_spots();
     BhrHotSpot             &spot = spots[index];
-    fields(HOT_SPOT_FIELDS, spot, with_defaults(bhr_hot_spot_init), [&] { return scene.set_hot_spots(spots); },
-           every_field);
+    const BhrHotSpot defaults = with_defaults(bhr_hot_spot_init);
+    fields(HOT_SPOT_FIELDS, &spot, &defaults, [&] { return scene.set_hot_spots(spots); }, every_field);
     ImGui::PopID();
 }
 
@@ -356,11 +141,13 @@ void SettingsPanel::matter(Scene &scene) {
         whole("volumes", static_cast<uint32_t>(volumes.size()), 0, BHR_MAX_VOLUMES, [&](uint32_t count) {
             volumes.resize(std::min<size_t>(count, BHR_MAX_VOLUMES), with_defaults(bhr_volume_init));
             return scene.set_volumes(volumes);
-        });
+        }, "clouds of matter about the hole: disk, torus, halo, jet; each has a section below\n\n"
+           "BhrVolume in bhr.h; docs/matter.md");
         whole("hot spots", static_cast<uint32_t>(spots.size()), 0, BHR_MAX_HOT_SPOTS, [&](uint32_t count) {
             spots.resize(std::min<size_t>(count, BHR_MAX_HOT_SPOTS), with_defaults(bhr_hot_spot_init));
             return scene.set_hot_spots(spots);
-        });
+        }, "blobs of matter that orbit the hole, or fall; each has a section below\n\n"
+           "BhrHotSpot in bhr.h; docs/matter.md");
     }
     for (size_t i = 0; i < scene.volumes().size(); i++) {
         volume(scene, i);
@@ -375,32 +162,15 @@ void SettingsPanel::sky(Scene &scene) {
         return;
     }
     BhrSky sky = scene.sky();
-    fields(SKY_FIELDS, sky, with_defaults(bhr_sky_init), [&] { return scene.set_sky(sky); }, every_field);
+    const BhrSky defaults = with_defaults(bhr_sky_init);
+    fields(SKY_FIELDS, &sky, &defaults, [&] { return scene.set_sky(sky); }, every_field);
     // The part of the orientation that a slider can show: a turn about the scene's z.
     const double turn = 2.0 * std::atan2(sky.orientation[2], sky.orientation[3]) / DEGREE;
     number("turned by", turn, -180.0, 180.0, "%.1f\xC2\xB0", false, [&](double degrees) {
         sky.orientation[2] = std::sin(0.5 * degrees * DEGREE);
         sky.orientation[3] = std::cos(0.5 * degrees * DEGREE);
         return scene.set_sky(sky);
-    });
-}
-
-void SettingsPanel::film(Scene &scene) {
-    if (!section("Film", true)) {
-        return;
-    }
-    // None of them is in force once something else was changed: so none is shown as chosen.
-    choice("preset", NO_PRESET, PRESETS, [&](int32_t preset) { return scene.set_preset(preset); });
-    // The name of AUTO says which it has chosen.
-    const bool deep = scene.chosen_matter() == BHR_PRESET_MATTER_DEEP;
-    const Choice matters[] = {{deep ? "auto: deep" : "auto: thin", BHR_PRESET_MATTER_AUTO},
-                              {"thin", BHR_PRESET_MATTER_THIN},
-                              {"deep", BHR_PRESET_MATTER_DEEP},
-                              {nullptr, 0}};
-    choice("its matter", scene.preset_matter(), matters,
-           [&](int32_t matter) { return scene.set_preset_matter(matter); });
-    BhrFilm film = scene.film();
-    fields(FILM_FIELDS, film, with_defaults(bhr_film_init), [&] { return scene.set_film(film); }, every_field);
+    }, "the sky's turn about scene z\nunit: degrees\n\nBhrSky.orientation in bhr.h; docs/maps.md");
 }
 
 void SettingsPanel::quality(Scene &scene, FrameSettings &frames) {
@@ -410,37 +180,67 @@ void SettingsPanel::quality(Scene &scene, FrameSettings &frames) {
     BhrQuality quality = scene.quality();
     // Two fields say how far a step goes; each method reads one of them. The picture has a scale of its own.
     const char *unread = quality.method == BHR_METHOD_ADAPTIVE ? "--step" : "--tolerance";
-    fields(QUALITY_FIELDS, quality, with_defaults(bhr_quality_init), [&] { return scene.set_quality(quality); },
+    const BhrQuality defaults = with_defaults(bhr_quality_init);
+    fields(QUALITY_FIELDS, &quality, &defaults, [&] { return scene.set_quality(quality); },
            [&](const Field &field) {
                return std::strcmp(field.option, unread) != 0 && std::strcmp(field.option, "--render-scale") != 0;
            });
     number("resolution", frames.scale, 0.1, 1.0, "%.2f", false, [&](double scale) {
         frames.scale = std::clamp(scale, 0.1, 1.0);
         return Result{};
-    });
+    }, "of the traced picture, against its place in the window\nrange: 0.1 .. 1");
     whole("in flight", frames.in_flight, 1, static_cast<uint32_t>(FrameQueue::CAPACITY), [&](uint32_t count) {
         frames.in_flight = std::clamp(count, 1U, static_cast<uint32_t>(FrameQueue::CAPACITY));
         return Result{};
-    });
+    }, "pictures that are asked for before the first of them has come\n\n"
+       "bhr_render_image_async in bhr.h; docs/jobs.md");
     ImGui::Checkbox("coarser while moving", &frames.adaptive);
+    tell("a picture with fewer pixels while it changes, so that it follows the hand");
     ImGui::SameLine();
     ImGui::Checkbox("never rest", &frames.always);
+    tell("frames go on where nothing has changed: to measure their speed");
 }
 
 void SettingsPanel::view(Scene &scene) {
-    if (!section("View and effects", true)) {
+    if (!section("View", true)) {
         return;
     }
-    choice("view", scene.view(), VIEWS, [&](int32_t view) { return scene.set_view(view); });
+    choice("view", scene.view(), VIEWS, [&](int32_t view) { return scene.set_view(view); },
+           "the quantity that pixels show; all but light are in false colour, without film\n\n"
+           "bhr_set_view in bhr.h; docs/views.md has the colours and their scales");
+}
+
+// A switch and a strength each, but for the delay, which has no strength.
+void SettingsPanel::effects(Scene &scene) {
+    if (!section("Effects", true)) {
+        return;
+    }
+    static const struct {
+        const char *name, *strength;
+        uint32_t    bit;
+        const char *about;
+    } rows[] = {
+        {"Doppler shift", "strength##Doppler", BHR_EFFECT_DOPPLER_SHIFT,
+         "the frequency shift by motion colours the light"},
+        {"gravity shift", "strength##gravity", BHR_EFFECT_GRAVITY_SHIFT,
+         "the gravitational redshift colours the light"},
+        {"beaming", "strength##beaming", BHR_EFFECT_BEAMING, "the intensity follows g^3 (I_nu), g^4 (all light)"},
+        {"light delay", nullptr, BHR_EFFECT_LIGHT_DELAY, "moving matter is seen where it was when its light left"},
+    };
     const auto set = [&](uint32_t effects) { return scene.set_effects(effects); };
-    flag("Doppler shift", scene.effects(), BHR_EFFECT_DOPPLER_SHIFT, set);
-    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-    flag("gravity shift", scene.effects(), BHR_EFFECT_GRAVITY_SHIFT, set);
-    flag("beaming", scene.effects(), BHR_EFFECT_BEAMING, set);
-    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
-    flag("light delay", scene.effects(), BHR_EFFECT_LIGHT_DELAY, set);
-    for (const char *effect : {"Doppler shift", "gravity shift", "beaming", "light delay"}) {
-        show_message(effect);
+    for (const auto &row : rows) {
+        flag(row.name, scene.effects(), row.bit, set,
+             std::string(row.about) + "\n\nbhr_set_effects in bhr.h; docs/physics.md");
+        show_message(row.name);
+        if (row.strength != nullptr) {
+            ImGui::BeginDisabled((scene.effects() & row.bit) == 0);
+            number(row.strength, scene.effect_strength(row.bit), 0.0, 1.0, "%.2f", false,
+                   [&](double strength) { return scene.set_effect_strength(row.bit, strength); },
+                   std::string("the strength of: ") + row.about + "; its factor counts to this power, for films; 1 is "
+                   "physics\nrange: 0 .. 1\n\nbhr_set_effect_strength in bhr.h; docs/physics.md\nas for "
+                   "\"Interstellar\": O. James et al. 2015");
+            ImGui::EndDisabled();
+        }
     }
 }
 
@@ -454,23 +254,61 @@ void SettingsPanel::time(Scene &scene, Clock &clock) {
     }
     ImGui::SameLine(LABEL_EMS * ImGui::GetFontSize());
     ImGui::Checkbox("camera follows its motion", &clock.moves_camera);
+    tell("a camera that falls or orbits goes on along its world line\n\n"
+         "bhr_camera_advance in bhr.h; docs/cameras.md");
     show_message("camera follows its motion");
     number("speed, M / s", clock.speed, -100.0, 100.0, "%.1f", false, [&](double speed) {
         clock.speed = speed;
         return Result{};
-    });
+    }, "of the scene's time\nunit: M a second of yours");
     number("time", scene.time(), 0.0, 1000.0 * scene.hole().mass, "%.2f", false,
-           [&](double time) { return scene.set_time(time); });
+           [&](double time) { return scene.set_time(time); },
+           "the scene's time, which matter moves by\nunit: scene lengths, by the speed of light\n\n"
+           "bhr_set_time in bhr.h");
 }
 
-void SettingsPanel::draw(Scene &scene, const BhrHoleInfo &numbers, FrameSettings &frames, Clock &clock) {
-    hole(scene, numbers);
-    camera(scene, numbers);
-    disk(scene);
-    matter(scene);
-    sky(scene);
-    film(scene);
-    quality(scene, frames);
-    view(scene);
-    time(scene, clock);
+void SettingsPanel::draw(Scene &scene, const BhrHoleInfo &numbers, FrameSettings &frames, Clock &clock,
+                         SectionReports &reports, const std::function<void()> &light) {
+    forget_places();
+    if (!ImGui::BeginTabBar("settings")) {
+        return;
+    }
+    // The rest of the window is a part that scrolls; the tabs, and what stands above it, stay.
+    const auto tab = [&](const char *name, const char *tip, const std::function<void()> &above,
+                         const std::function<void()> &content) {
+        begin_section("tabs");
+        const bool chosen = ImGui::BeginTabItem(name);
+        mark(name);
+        tell(tip);
+        if (!chosen) {
+            return;
+        }
+        above();
+        {
+            const Part part(reports, (std::string("Settings, ") + name).c_str(), {0.0F, 0.0F});
+            content();
+        }
+        ImGui::EndTabItem();
+    };
+    const auto nothing = [] {};
+    tab("Scene", "hole, camera, disk, matter with depth, sky", nothing, [&] {
+        hole(scene, numbers);
+        camera(scene, numbers);
+        disk(scene);
+        matter(scene);
+        sky(scene);
+    });
+    tab("Film", "from light to pixels: exposure, grade, curve, lens, grain, LUT", light, [&] { film(scene); });
+    tab("Effects", "the view, relativistic effects, the clock", nothing, [&] {
+        view(scene);
+        effects(scene);
+        time(scene, clock);
+    });
+    tab("Frames", "how rays are followed, and how frames are made", nothing, [&] { quality(scene, frames); });
+    ImGui::EndTabBar();
+}
+
+void SettingsPanel::mark_tab(const char *bar, const char *name) {
+    begin_section(bar);
+    mark(name);
 }

@@ -12,11 +12,26 @@
 namespace {
 
 constexpr float TEXT_SIZE = 14.0F;
+constexpr int   USUAL_SIZE[2] = {1600, 1000};
+constexpr int   FRAME[2] = {16, 48}; // room that a window's frame and title take, about
 
 std::string glfw_failure(const char *what) {
     const char *reason = nullptr;
     glfwGetError(&reason);
     return std::string("cannot ") + what + ": " + (reason != nullptr ? reason : "GLFW does not say why");
+}
+
+// Makes the usual size no larger than the first screen has room for beside its bars.
+void fit_to_screen(int size[2]) {
+    int          x = 0, y = 0, room[2] = {0, 0};
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
+    if (monitor != nullptr) {
+        glfwGetMonitorWorkarea(monitor, &x, &y, &room[0], &room[1]);
+    }
+    for (int i = 0; i < 2; i++) {
+        const int most = room[i] - FRAME[i];
+        size[i] = most > 0 ? std::min(USUAL_SIZE[i], most) : USUAL_SIZE[i];
+    }
 }
 
 // A font that most systems have, for ImGui's own is made for 13 pixels only.
@@ -77,9 +92,13 @@ std::string Window::open(uint32_t width, uint32_t height, const char *title) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    // The size means the same to the eye on displays of any density.
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title, nullptr, nullptr);
+    // A size that was asked for means the same to the eye on displays of any density; the screen's is in its own units.
+    int size[2] = {static_cast<int>(width), static_cast<int>(height)};
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, width != 0 ? GLFW_TRUE : GLFW_FALSE);
+    if (width == 0) {
+        fit_to_screen(size);
+    }
+    window_ = glfwCreateWindow(size[0], size[1], title, nullptr, nullptr);
     if (window_ == nullptr) {
         return glfw_failure("open a window with OpenGL 3.2");
     }

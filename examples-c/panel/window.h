@@ -18,7 +18,7 @@ public:
     Window(const Window &) = delete;
     Window &operator=(const Window &) = delete;
 
-    // "", or why there is no window.
+    // A size of 0 is what the screen has room for of the usual one. Returns "", or why there is no window.
     std::string open(uint32_t width, uint32_t height, const char *title);
 
     // By its frame or the Escape key.

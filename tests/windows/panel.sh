@@ -47,6 +47,33 @@ panel_last() {
     grep -E -- "$1" "$panel_log" | tail -n 1
 }
 
+# panel_widget SECTION/LABEL: where the window shows it, two numbers.
+panel_widget() {
+    awk -v name="$1" '/^widget / { place = $2 " " $3; sub(/^widget [0-9-]+ [0-9-]+ /, "")
+        if ($0 == name) found = place }
+        END { if (found == "") exit 1; print found }' "$panel_log" || panel_complain "no widget '$1' is seen"
+}
+
+# panel_places: of the window as it was drawn last.
+panel_places() {
+    awk '/^places$/ { text = ""; in_places = 1; next }
+        /^(section|widget) / { if (in_places) text = text $0 "\n"; next }
+        { in_places = 0 }
+        END { printf "%s", text }' "$panel_log"
+}
+
+# panel_click_on SECTION/LABEL
+panel_click_on() {
+    local x y
+    read -r x y < <(panel_widget "$1") && [ -n "$y" ] && panel_press "$x" "$y"
+}
+
+# panel_set SECTION/LABEL TEXT PATTERN: as panel_type_into.
+panel_set() {
+    local x y
+    read -r x y < <(panel_widget "$1") && [ -n "$y" ] && panel_type_into "$x" "$y" "$2" "$3"
+}
+
 # panel_ends: it was asked to end, and does so by itself with status 0, whatever is in flight.
 panel_ends() {
     local end=$((SECONDS + panel_action))
@@ -148,13 +175,11 @@ panel_takes_clicks() {
     xdotool click 4
     panel_says 1 'distance 27 ' || return 1
 
-    # Below the row of files the second row of the first section is the spin.
-    panel_type_into 200 84 0.25 ' spin 0.25 ' || return 1
-    # The section after the disk's: how many volumes and hot spots there are.
-    panel_type_into 150 561 2 '^matter volumes 2 hot spots 0$' || return 1
-    panel_type_into 150 579 1 '^matter volumes 2 hot spots 1$' || return 1
+    panel_set 'Hole/spin a / M' 0.25 ' spin 0.25 ' || return 1
+    panel_set 'Matter with depth/volumes' 2 '^matter volumes 2 hot spots 0$' || return 1
+    panel_set 'Matter with depth/hot spots' 1 '^matter volumes 2 hot spots 1$' || return 1
     # A refusal is written below its slider, and moves all that follows.
-    panel_type_into 200 84 1.5 '^refused .*1\.5.*\[-1, 1\]' || return 1
+    panel_set 'Hole/spin a / M' 1.5 '^refused .*1\.5.*\[-1, 1\]' || return 1
     panel_expect "$(panel_last '^(scene|refused) ' | cut -d ' ' -f 1)" refused || return 1 # the scene is as it was
 
     panel_close "$middle_x" "$middle_y"
@@ -172,9 +197,9 @@ panel_keeps_scenes() {
     local folder=$scratch/panel-scenes spin='^scene mass 1 spin' away=800,300
     mkdir -p -- "$folder" && cd -- "$folder" && panel_open --size 1600x1000 --paused --backend cpu && panel_find ||
         return 1
-    panel_type_into 200 84 0.25 "$spin 0.25 " && panel_press 140 30 && panel_says 1 '^file saved panel.toml$' &&
+    panel_set 'Hole/spin a / M' 0.25 "$spin 0.25 " && panel_press 140 30 && panel_says 1 '^file saved panel.toml$' &&
         cp -- panel.toml first.toml || return 1
-    panel_type_into 200 84 0.5 "$spin 0.5 " && panel_point "${away%,*}" "${away#*,}" && xdotool click 4 &&
+    panel_set 'Hole/spin a / M' 0.5 "$spin 0.5 " && panel_point "${away%,*}" "${away#*,}" && xdotool click 4 &&
         panel_says 1 'spin 0.5 distance 27 ' && sleep 1 || return 1
     # One step is the wheel's, and one is the number's, digit by digit as it was typed.
     panel_ctrl z && panel_says 2 'spin 0.5 distance 30 ' && panel_ctrl z && panel_says 2 "$spin 0.25 " &&
@@ -186,6 +211,119 @@ panel_keeps_scenes() {
     echo 'spin = 3' >>panel.toml
     panel_press 188 30 && panel_says 1 '^file .*panel.toml: line .*spin' && panel_press 238 30 &&
         panel_says 3 'spin 0.5 distance 27 ' && panel_close "${away%,*}" "${away#*,}"
+}
+
+# panel_fits WIDTH HEIGHT: nothing of the window as it was drawn last is outside it, or hidden without a scroll bar; the
+# windows and the picture do not overlap, and the picture is at least a third of the window.
+panel_fits() {
+    local places=$scratch/panel-places
+    panel_places >"$places"
+    panel_last '^picture ' >>"$places"
+    awk -v width="$1" -v height="$2" '
+        function fail(why) { print why ": " $0; failed = 1 }
+        $1 == "section" {
+            name = $0
+            sub(/.* bar [01] /, "", name)
+            if ($2 < 0 || $3 < 0 || $2 + $4 > width || $3 + $5 > height) fail("beyond the window")
+            if ($7 > 0) fail("cut off at the side")
+            if ($8 > 0 && $10 != 1) fail("hidden without a scroll bar")
+            scrolling += $8 > 0
+            if (name !~ /^Settings, /) { place[++count] = $2 " " $3 " " $4 " " $5 " " name }
+        }
+        $1 == "picture" {
+            if ($4 * $5 < width * height / 3) fail("too small")
+            place[++count] = $2 " " $3 " " $4 " " $5 " picture"
+        }
+        END {
+            for (i = 1; i <= count; i++) for (j = i + 1; j <= count; j++) {
+                split(place[i], a, " "); split(place[j], b, " ")
+                if ((a[5] "" b[5]) ~ /Instruments/ && (a[5] "" b[5]) !~ /Scene|picture/) continue # its own parts
+                if (a[1] < b[1] + b[3] && b[1] < a[1] + a[3] && a[2] < b[2] + b[4] && b[2] < a[2] + a[4]) {
+                    print "overlap: " place[i] ", " place[j]; failed = 1
+                }
+            }
+            print count " places, " scrolling " of them scroll"
+            exit failed || count < 4
+        }' "$places"
+}
+
+# At every usual size of a screen each tab of the settings, and each of the instruments, has all of its content in the
+# window or behind a scroll bar. The film has a widget for every field of BhrFilm.
+panel_fits_screens() {
+    local size tab instrument fields names
+    for size in 1280x720 1280x800 1920x1080; do
+        panel_open --size "$size" --paused --backend cpu --preset cinematic && panel_find || return 1
+        for tab in Scene Film Effects Frames; do
+            panel_click_on "tabs/$tab" && panel_says 1 "^section .* Settings, $tab\$" && sleep 1 &&
+                panel_fits "${size%x*}" "${size#*x}" || panel_complain "$size, $tab" || return 1
+        done
+        for instrument in $([ "$size" = 1920x1080 ] || echo g_tt Steps Performance Ray); do
+            panel_click_on "instruments/$instrument" && sleep 1 && panel_fits "${size%x*}" "${size#*x}" ||
+                panel_complain "$size, $instrument" || return 1
+        done
+        if [ "$size" = 1280x720 ]; then
+            panel_click_on tabs/Film && sleep 1 &&
+                panel_set 'Exposure/auto exposure' 1 '^light .* auto -?[0-9]*\.[0-9]*[1-9]' && sleep 1 &&
+                panel_fits 1280 720 && panel_point 40 500 || return 1
+            for _ in 1 2 3 4 5 6 7 8; do
+                xdotool click 5 && sleep 0.3
+            done
+            fields=$(awk '/FILM_FIELDS/ { inside = 1 } inside && /"--/ { count++ } /QUALITY_FIELDS/ { exit }
+                END { print count }' "$root/examples-c/fields.c")
+            names=$(grep -E '^widget [0-9]+ [0-9]+ (Exposure|High.*|Curve|Grade|Lens|Grain|LUT.*|More)/' "$panel_log" |
+                cut -d ' ' -f 4- | sort -u | grep -cv 'LUT file')
+            panel_expect "$names fields of film" "$fields fields of film" || return 1
+        fi
+        panel_close $((${size%x*} / 2)) 200 || return 1
+    done
+}
+
+# panel_mean FILE COLUMNS: the mean of the columns WIDTHxHEIGHT+X+Y of a picture, 0 to 255.
+panel_mean() { convert "$1" -crop "$2" -colorspace Gray -format '%[fx:255*mean]' info:; }
+
+# panel_brighter A B: A is more than half as bright again.
+panel_brighter() { awk -v a="$1" -v b="$2" 'BEGIN { print a " against " b; exit !(a > 1.5 * b) }'; }
+
+# A setting is kept as A: the left of the picture goes on to show it while B changes on the right; the line between them
+# follows the mouse; and A and B change places.
+panel_compares() {
+    local left top width height half kept
+    panel_open --size 1280x720 --paused --backend cpu && panel_find || return 1
+    read -r _ left top width height <<<"$(panel_last '^picture ')"
+    half=$((width / 2 - 40))
+    panel_click_on tabs/Film && sleep 1 && import -window "$panel_window" "$scratch/wipe-0.png" || return 1
+    kept=$(panel_mean "$scratch/wipe-0.png" "${half}x$height+$left+$top")
+    panel_click_on 'A and B/keep as A' && panel_says 1 '^compared 1$' &&
+        panel_set Exposure/exposure 3 '^frames [2-9]' && sleep 3 &&
+        import -window "$panel_window" "$scratch/wipe-1.png" || return 1
+    awk -v a="$kept" -v b="$(panel_mean "$scratch/wipe-1.png" "${half}x$height+$left+$top")" \
+        'BEGIN { print "left of the line " a ", then " b; exit !(a - b < 0.5 && b - a < 0.5) }' || return 1
+    panel_brighter "$(panel_mean "$scratch/wipe-1.png" "${half}x$height+$((left + width / 2 + 40))+$top")" \
+        "$(panel_mean "$scratch/wipe-0.png" "${half}x$height+$((left + width / 2 + 40))+$top")" || return 1
+    # Dragging the line moves nothing else.
+    panel_point $((left + width / 2)) $((top + 300)) && xdotool mousedown 1 && sleep 0.3 &&
+        panel_point $((left + width / 3)) $((top + 320)) && panel_point $((left + width / 4)) $((top + 320)) &&
+        xdotool mouseup 1 && panel_says 1 '^wipe 0\.2[45]' || return 1
+    panel_expect "$(grep -c '^scene ' "$panel_log")" 1 || return 1
+    panel_click_on 'A and B/swap' && panel_says 1 '^compared [2-9]' && sleep 3 &&
+        import -window "$panel_window" "$scratch/wipe-2.png" || return 1
+    panel_brighter "$(panel_mean "$scratch/wipe-2.png" "$((width / 4 - 40))x$height+$left+$top")" \
+        "$(panel_mean "$scratch/wipe-0.png" "$((width / 4 - 40))x$height+$left+$top")" &&
+        panel_close $((left + 100)) 200
+}
+
+# The share of bright pixels beside the exposure is that of the picture, as another program counts it.
+panel_counts_light() {
+    local said counted
+    panel_open --size 1280x720 --paused --backend cpu --hold 12 --picture "$scratch/panel-light.png" && panel_find &&
+        panel_click_on tabs/Film && panel_says 1 '^light above 235: ' && panel_ends || return 1
+    said=$(panel_last '^light ' | cut -d ' ' -f 4)
+    # Luma of encoded values, rounded: above 235 is from 235.5 on.
+    counted=$(convert "$scratch/panel-light.png" -set colorspace RGB -alpha off \
+        -color-matrix '0.2126 0.7152 0.0722 0.2126 0.7152 0.0722 0.2126 0.7152 0.0722' -threshold 92.353% \
+        -format '%[fx:mean]' info:)
+    awk -v said="$said" -v counted="$counted" 'BEGIN { print "said " said ", counted " counted
+        exit !(counted > 0.01 && said - counted < 0.003 && counted - said < 0.003) }'
 }
 
 # Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.
