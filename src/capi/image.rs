@@ -11,6 +11,7 @@ use crate::image::{self, Alpha, ColourSpace, ImageMut, Layout, Loaded, PixelForm
 use crate::platform::path_of_bytes;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
+use std::mem::offset_of;
 use std::path::PathBuf;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -263,15 +264,21 @@ pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 /// Converts the linear light of an image of RGBA16F or RGBA32F in place, from its colour_space to another, which
 /// becomes its colour_space; white stays white (Bradford's adaptation), alpha stays. All light of bhr lies within
 /// REC709, and so within P3_D65, REC2020 and ACESCG: nothing becomes negative there.
-/// Errors: INVALID_ARGUMENT also for other formats. @since 0.2.0
+/// Errors: INVALID_ARGUMENT also for other formats, and for a struct_size without colour_space. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_convert(image: *mut BhrImage, colour_space: BhrColourSpace) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     anywhere("bhr_image_convert", || unsafe {
         let to = colour_space_of(colour_space)?;
         let (mut given, from) = read_in_space(image, "image")?;
-        from.convert(&mut given.pixels, to)?;
         let told = versioned::read(image, "image")?;
+        if (told.struct_size as usize) < offset_of!(BhrImage, reserved2) {
+            return Err(Error::argument(format!(
+                "image struct_size is {}, of a header whose BhrImage has no colour_space to say what its light is then",
+                told.struct_size
+            )));
+        }
+        from.convert(&mut given.pixels, to)?;
         versioned::write(image, "image", &BhrImage { colour_space, ..told })
     })
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* hdr.c -- pictures of high dynamic range: codes of PQ and HLG are those of ITU-R BT.2100 and BT.2390 for the light of
- * the same frame in floats, glare and grade included; files say what they hold; views are refused. Gets an empty
- * folder. */
+ * the same frame in floats; files say what they hold; views are refused. Colour spaces of float images: light is
+ * converted, files say so, and it is refused where Rec. 709 is expected. Gets an empty folder. */
 #include "check.h"
 
 #include <math.h>
@@ -162,6 +162,70 @@ static void files_say_what_they_hold(BhrContext *context, const char *folder) {
     }
 }
 
+static BhrImage float_image(float (*pixels)[4]) {
+    BhrImage image;
+    BHR_INIT(image);
+    image.format = BHR_FORMAT_RGBA32F, image.width = WIDTH, image.height = HEIGHT;
+    image.pixels = pixels, image.byte_size = sizeof light;
+    return image;
+}
+
+static void colour_spaces(BhrContext *context, const char *folder) {
+    static const double acescg[3][3] = {
+        {0.613097, 0.339523, 0.047379}, {0.070194, 0.916354, 0.013452}, {0.020616, 0.109570, 0.869815}};
+    static float other[PIXELS][4];
+    BhrImage     image = float_image(other);
+    render(context, BHR_FORMAT_RGBA32F, 0, light);
+    memcpy(other, light, sizeof light);
+    CHECK_OK(bhr_image_convert(&image, BHR_COLOUR_SPACE_ACESCG));
+    CHECK(image.colour_space == BHR_COLOUR_SPACE_ACESCG, "its colour space is %d", image.colour_space);
+    double most = 0;
+    for (size_t p = 0; p < PIXELS; p++) {
+        for (int row = 0; row < 3; row++) {
+            double wanted = 0;
+            for (int c = 0; c < 3; c++) {
+                wanted += acescg[row][c] * light[p][c];
+            }
+            most = fmax(most, fabs(other[p][row] - wanted) / (wanted + 1e-3));
+        }
+        CHECK(other[p][3] == light[p][3], "alpha changes");
+    }
+    CHECK(most < 1e-5, "light in ACEScg is %g off", most);
+
+    char path[4096];
+    snprintf(path, sizeof path, "%s/acescg.exr", folder);
+    CHECK_OK(bhr_image_save(&image, path));
+    BhrImage read;
+    BHR_INIT(read);
+    if (CHECK_OK(bhr_image_load(path, &read))) {
+        most = 0;
+        for (size_t i = 0; i < 4 * PIXELS; i++) {
+            const double wanted = light[i / 4][i % 4];
+            most = fmax(most, fabs(((const float *)read.pixels)[i] - wanted) / (fabs(wanted) + 1e-3));
+        }
+        CHECK(most < 1e-4 && read.colour_space == BHR_COLOUR_SPACE_REC709, "a file's light is %g off", most);
+        CHECK_OK(bhr_image_release(&read));
+    }
+
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "colour_space", bhr_render_image(context, &image));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "colour_space", bhr_set_sky_map(context, &image));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "colour", bhr_image_convert(&image, 4));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "colour", bhr_image_convert(&image, -1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "NULL", bhr_image_convert(NULL, BHR_COLOUR_SPACE_REC709));
+    BhrImage bad = image;
+    bad.format = BHR_FORMAT_RGBA8_SRGB;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "RGBA8_SRGB", bhr_image_convert(&bad, BHR_COLOUR_SPACE_REC709));
+    bad = image, bad.byte_size--;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "byte_size", bhr_image_convert(&bad, BHR_COLOUR_SPACE_REC709));
+    bad = image, bad.struct_size = (uint32_t)offsetof(BhrImage, colour_space);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_image_convert(&bad, BHR_COLOUR_SPACE_REC2020));
+
+    CHECK_OK(bhr_image_convert(&image, BHR_COLOUR_SPACE_P3_D65));
+    CHECK_OK(bhr_image_convert(&image, BHR_COLOUR_SPACE_REC2020));
+    CHECK_OK(bhr_image_convert(&image, BHR_COLOUR_SPACE_REC709));
+    CHECK_OK(bhr_render_image(context, &image));
+}
+
 static void what_does_not_go_is_refused(BhrContext *context) {
     const BhrImage image = image_of(BHR_FORMAT_RGB10A2_PQ, WIDTH, HEIGHT, words, sizeof words);
     CHECK_OK(bhr_set_view(context, BHR_VIEW_REDSHIFT));
@@ -185,6 +249,7 @@ int main(int argc, char **argv) {
     codes_are_those_of_the_light(context, BHR_FORMAT_RGB10A2_HLG, 203, 1000, 0);
     films_that_are_heeded(context);
     files_say_what_they_hold(context, argc > 2 ? argv[2] : ".");
+    colour_spaces(context, argc > 2 ? argv[2] : ".");
     what_does_not_go_is_refused(context);
     bhr_context_destroy(context);
     return check_end();
