@@ -895,7 +895,7 @@ BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 /** Converts the linear light of an image of RGBA16F or RGBA32F in place, from its colour_space to another, which
  * becomes its colour_space; white stays white (Bradford's adaptation), alpha stays. All light of bhr lies within
  * REC709, and so within P3_D65, REC2020 and ACESCG: nothing becomes negative there.
- * Errors: INVALID_ARGUMENT also for other formats. @since 0.2.0 */
+ * Errors: INVALID_ARGUMENT also for other formats, and for a struct_size without colour_space. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_image_convert(BhrImage *image, BhrColourSpace colour_space);
 
 /** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), RGB10A2 to .png of 16 bits without
