@@ -22,7 +22,7 @@ void picture_fill(BhrImage *image, unsigned char grey);
 void picture_scale(const BhrImage *from, BhrImage *to, uint32_t x, uint32_t y, uint32_t width, uint32_t height);
 
 /* Writes text, white with a dark rim, with the top-left corner of its first cell at x, y; what lies outside the picture
- * is left out. Has a to z, 0 to 9, A G H J K M S and " %()*+,-./:="; other characters are blank. */
+ * is left out. Has a to z, 0 to 9, A G H J K M S and " %()*+,-./:=_"; other characters are blank. */
 void picture_write(BhrImage *image, uint32_t x, uint32_t y, uint32_t scale, const char *text);
 
 /* Saves it as FOLDER/NAME. 1, or 0 after a message. */

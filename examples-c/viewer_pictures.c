@@ -2,6 +2,7 @@
 /* viewer_pictures.c -- see viewer_pictures.h. */
 #include "viewer_pictures.h"
 
+#include "colour_bar.h"
 #include "common.h"
 #include "picture.h"
 
@@ -12,9 +13,15 @@
 #define MOST_PICTURES 9999
 #define MOST_FILMS 99
 
-static BhrStatus render_and_save(BhrContext *context, const BhrImage *image, const char *path) {
-    BhrStatus status = bhr_render_image(context, image);
+/* False colour gets its bar in files alone: windows are the library's. */
+static BhrStatus explain_and_save(const BhrContext *context, BhrImage *image, const char *path) {
+    BhrStatus status = colour_bar_add(context, image);
     return status < 0 ? status : bhr_image_save(image, path);
+}
+
+static BhrStatus render_and_save(BhrContext *context, BhrImage *image, const char *path) {
+    BhrStatus status = bhr_render_image(context, image);
+    return status < 0 ? status : explain_and_save(context, image, path);
 }
 
 int picture_save(BhrContext *context, uint32_t width, uint32_t height, const char *path) {
@@ -126,7 +133,7 @@ PictureEnd picture_poll(PictureJob *picture) {
         return PICTURE_RUNNING;
     }
     if (status >= 0) {
-        status = bhr_image_save(&picture->image, picture->path);
+        status = explain_and_save(picture->context, &picture->image, picture->path);
     }
     if (status < 0) {
         report_failure("save a picture", status);
