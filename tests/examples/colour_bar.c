@@ -101,6 +101,23 @@ static void compare(BhrContext *context, BhrView view) {
           bar.no_value != NULL ? bar.no_value : "nothing of them");
 }
 
+/* Words do not run into each other, and numbers neither, in the narrowest picture that gets a bar. */
+static void fits(BhrView view) {
+    const double width = 300 - 2 * (300 / 12);
+    ColourBar    bar;
+    if (!colour_bar_of_view(view, &bar)) {
+        exit(EXIT_FAILURE);
+    }
+    const size_t words = strlen(bar.title) + (bar.no_value != NULL ? 2 + strlen(bar.no_value) : 0);
+    CHECK((double)(words * CELL_WIDTH) < width, "view %d: the title has no room", (int)view);
+    for (uint32_t i = 1; i < bar.count && bar.steps == 0; i++) {
+        const double apart = (bar.marks[i].share - bar.marks[i - 1].share) * width;
+        const size_t letters = strlen(bar.marks[i].text) + strlen(bar.marks[i - 1].text);
+        CHECK(apart > 0.5 * (double)(letters * CELL_WIDTH) + 2.0, "view %d: %s and %s are too near", (int)view,
+              bar.marks[i - 1].text, bar.marks[i].text);
+    }
+}
+
 /* The bar that is added: rows above it are as they were; somewhere in it is a row that runs through the colours. */
 static void draw(BhrContext *context, BhrView view, BhrImage *picture) {
     const size_t   row_bytes = 4 * (size_t)WIDTH, bytes = row_bytes * HEIGHT;
@@ -161,6 +178,7 @@ int main(void) {
     for (BhrView view = BHR_VIEW_REDSHIFT; view <= BHR_VIEW_INTENSITY; view++) {
         compare(context, view);
         draw(context, view, &picture);
+        fits(view);
     }
     is_drawn_where_it_belongs(context, &picture);
     free(picture.pixels);
