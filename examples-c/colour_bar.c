@@ -213,23 +213,34 @@ void colour_bar_draw(BhrImage *image, const ColourBar *bar, uint32_t scale) {
     draw_marks(image, bar, margin, top + edge + line + THICK * scale, width, scale);
 }
 
-BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image) {
-    BhrView   view;
-    ColourBar bar;
-    BhrFilm   film;
+BhrStatus colour_bar_of_frames(const BhrContext *context, ColourBar *bar) {
+    BhrView view;
+    BhrFilm film;
     BHR_INIT(film);
     BhrStatus status = bhr_get_view(context, &view);
     if (status >= 0) {
         status = bhr_get_film(context, &film);
     }
+    if (status < 0 || !(view == BHR_VIEW_LIGHT ? colour_bar_of_film(&film, bar) : colour_bar_of_view(view, bar))) {
+        *bar = (ColourBar){.count = 0};
+    }
+    return status;
+}
+
+uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar) {
     /* Text looks alike on a page, whatever a picture's resolution. */
     const uint32_t by_width = image->width / LEAST_WIDTH, by_height = image->height / LEAST_HEIGHT;
     const uint32_t scale = ((by_width < by_height ? by_width : by_height) + 1) / 2;
-    if (status < 0 || scale == 0) {
-        return status;
+    if (scale == 0 || bar->count == 0) {
+        return 0;
     }
-    if (view == BHR_VIEW_LIGHT ? colour_bar_of_film(&film, &bar) : colour_bar_of_view(view, &bar)) {
-        colour_bar_draw(image, &bar, scale);
-    }
+    colour_bar_draw(image, bar, scale);
+    return COLOUR_BAR_ROWS * scale;
+}
+
+BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image) {
+    ColourBar       bar;
+    const BhrStatus status = colour_bar_of_frames(context, &bar);
+    colour_bar_put(image, &bar);
     return status;
 }

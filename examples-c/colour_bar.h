@@ -45,8 +45,15 @@ void colour_bar_mark(ColourBar *bar, double most);
  * behind it. `scale`: of the text, as for picture_write. */
 void colour_bar_draw(BhrImage *image, const ColourBar *bar, uint32_t scale);
 
-/* Adds the bar that a context's frames need: that of its view, else that of its film's colour map, else none. Pictures
- * of less than 300 x 150 pixels, in which no text could be read, stay as they are. */
+/* The bar that a context's frames need: that of their view, else that of their film's colour map, else one without
+ * marks. */
+BhrStatus colour_bar_of_frames(const BhrContext *context, ColourBar *bar);
+
+/* Draws a bar that has marks. The rows that it takes: none in pictures of less than 300 x 150 pixels, in which no text
+ * could be read. */
+uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar);
+
+/* Both, for a picture of the scene as it is set. */
 BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image);
 
 #endif
