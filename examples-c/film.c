@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* film.c -- plays a scene file (docs/scenes.md) into numbered pictures or a video; scenes/fall.toml unless told other.
  * Two jobs are under way at a time, so that one frame is written while the next is rendered. */
+#include "colour_bar.h"
 #include "options.h"
 #include "picture.h"
 #include "scene_files.h"
@@ -23,6 +24,7 @@ typedef struct Film {
     BhrContext *context;
     BhrJob     *jobs[JOBS]; /* NULL: none is under way */
     BhrImage    images[JOBS];
+    ColourBar   bars[JOBS]; /* without marks where a frame's colours are its light's */
     char        clocks[JOBS][96];
     Video       video;
 } Film;
@@ -75,6 +77,9 @@ static int begin(Film *f, uint32_t frame) {
         snprintf(f->clocks[frame % JOBS], sizeof f->clocks[0], "t = %.2f s   r = %.2f M%s", seconds,
                  2.0 * info.camera_radius / info.ergosphere_equatorial_radius,
                  info.camera_radius < info.horizon_radius ? "   inside the horizon" : "");
+        status = colour_bar_of_frames(f->context, &f->bars[frame % JOBS]);
+    }
+    if (status >= 0) {
         status = bhr_render_image_async(f->context, &f->images[frame % JOBS], &f->jobs[frame % JOBS]);
     }
     return status >= 0 || !report_failure("begin a frame", status);
@@ -89,9 +94,10 @@ static int finish(Film *f, uint32_t frame) {
     if (status < 0) {
         return !report_failure("render a frame", status);
     }
+    const uint32_t foot = colour_bar_put(image, &f->bars[frame % JOBS]);
     if (f->clock) {
         const uint32_t scale = image->width < 960 ? 1 : image->width / 480; /* the text is 300 wide at 1 */
-        picture_write(image, 4 * scale, image->height - CELL_HEIGHT * scale, scale, f->clocks[frame % JOBS]);
+        picture_write(image, 4 * scale, image->height - foot - CELL_HEIGHT * scale, scale, f->clocks[frame % JOBS]);
     }
     char name[24];
     snprintf(name, sizeof name, "frame-%05u.png", (unsigned)frame);

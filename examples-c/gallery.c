@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* gallery.c -- scene files (examples-c/scenes) into PNG files, and a contact sheet of them: what the renderer can
  * show. */
+#include "colour_bar.h"
 #include "options.h"
 #include "picture.h"
 #include "scene_files.h"
@@ -141,11 +142,14 @@ static int set_scene(BhrContext *context, const Settings *s, const char *name, u
     return 1;
 }
 
-/* Renders into the picture and saves it. 1, or 0 after a message. */
-static int render(BhrContext *context, const Settings *s, const char *scene, const BhrImage *picture) {
+/* Renders into the picture, with a colour bar where its colours are false, and saves it. 1, or 0 after a message. */
+static int render(BhrContext *context, const Settings *s, const char *scene, BhrImage *picture) {
     char      name[64];
     double    begin = wall_seconds();
     BhrStatus status = bhr_render_image(context, picture);
+    if (status >= 0) {
+        status = colour_bar_add(context, picture);
+    }
     if (status < 0) {
         fprintf(stderr, "%s: ", scene);
         report_failure("render", status);

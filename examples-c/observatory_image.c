@@ -5,6 +5,7 @@
  * At the frequency nu the matter sends j0 (nu / 230 GHz)^-alpha n and absorbs a0 (nu / 230 GHz)^-(2.5 + alpha) n per
  * unit of length, as electrons with a power law of energies do (Rybicki and Lightman 1979, eqs. 6.36 and 6.53). a0 is
  * given; j0 follows from the flux at 230 GHz. */
+#include "colour_bar.h"
 #include "matter.h"
 #include "fits.h"
 #include "observatory.h"
@@ -290,25 +291,18 @@ static double value_at(const double *pixels, uint32_t side, double x, double y) 
     return cubic(column, y - top);
 }
 
-/* Gnuplot's and Matplotlib's "afmhot", which the pictures of the Event Horizon Telescope have. */
-static void colour_of(double value, unsigned char out[4]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] = (unsigned char)(255.0 * fmin(fmax(2.0 * value - 0.5 * i, 0.0), 1.0) + 0.5);
-    }
-    out[3] = 255;
-}
-
 static void draw_pixels(const Images *images, BhrImage *picture, uint32_t scale) {
     const uint32_t side = images->s->pixels;
     double         peak = 0.0;
     for (size_t i = 0; i < images->count; i++) {
         peak = fmax(peak, images->light[i]);
     }
-    for (uint32_t y = 0; y < picture->height; y++) {
-        for (uint32_t x = 0; x < picture->width; x++) {
-            const double value = value_at(images->light, side, (x + 0.5) / scale - 0.5, (y + 0.5) / scale - 0.5);
-            colour_of(peak > 0.0 ? value / peak : 0.0,
-                      (unsigned char *)picture->pixels + 4 * ((size_t)y * picture->width + x));
+    for (uint32_t y = 0; y < side * scale; y++) {
+        for (uint32_t x = 0; x < side * scale; x++) {
+            const double   value = value_at(images->light, side, (x + 0.5) / scale - 0.5, (y + 0.5) / scale - 0.5);
+            unsigned char *pixel = (unsigned char *)picture->pixels + 4 * ((size_t)y * picture->width + x);
+            colour_afmhot(peak > 0.0 ? value / peak : 0.0, pixel);
+            pixel[3] = 255;
         }
     }
 }
@@ -319,10 +313,15 @@ static double round_length(double most) {
     return power * (factor >= 5.0 ? 5.0 : factor >= 2.0 ? 2.0 : 1.0);
 }
 
-/* The words in the corners, the scale bar, the beam's size. */
+/* The size of text in a picture that is so wide. */
+static uint32_t text_scale(uint32_t width) {
+    return width >= 1280 ? 3 : 2;
+}
+
+/* The words in the corners, the scale bar, the beam's size, on the square that the pixels fill. */
 static void annotate(const Images *images, BhrImage *picture, const Measured *found) {
     const Settings *s = images->s;
-    const uint32_t  text = picture->width >= 1280 ? 3 : 2, line = CELL_HEIGHT * text, edge = picture->width / 32;
+    const uint32_t  text = text_scale(picture->width), line = CELL_HEIGHT * text, edge = picture->width / 32;
     const double    uas = picture->width / (images->pixel * s->pixels / MICROARCSECOND); /* pixels */
     char            words[64];
     snprintf(words, sizeof words, "%s", s->target.object);
@@ -335,7 +334,7 @@ static void annotate(const Images *images, BhrImage *picture, const Measured *fo
     snprintf(words, sizeof words, "peak %.2g K", found->peak);
     picture_write(picture, right - (uint32_t)strlen(words) * CELL_WIDTH * text, edge + line, text, words);
 
-    const double length = round_length(0.3 * picture->width / uas), bottom = picture->height - edge;
+    const double length = round_length(0.3 * picture->width / uas), bottom = picture->width - edge;
     draw_line(picture, right - length * uas, bottom, right, bottom, 3.0, WHITE);
     snprintf(words, sizeof words, "%g uas", length);
     const double wide = (double)(strlen(words) * CELL_WIDTH * text);
@@ -350,14 +349,29 @@ static void annotate(const Images *images, BhrImage *picture, const Measured *fo
     }
 }
 
+/* Colours are shares of the peak; numbers are K over a power of ten, which the title names. */
+static void draw_bar(BhrImage *picture, double peak, uint32_t text) {
+    char         title[64];
+    const double power = peak > 0.0 ? floor(log10(peak)) : 0.0;
+    ColourBar    bar = {.title = title, .colour = colour_afmhot};
+    snprintf(title, sizeof title, "brightness temperature, 1e%g K", power);
+    if (peak > 0.0) {
+        colour_bar_mark(&bar, peak / pow(10.0, power));
+    }
+    colour_bar_draw(picture, &bar, text);
+}
+
 static int write_picture(const Images *images, const Measured *found, const char *name) {
     const uint32_t side = images->s->pixels, scale = side >= PICTURE_WIDTH ? 1 : (PICTURE_WIDTH + side - 1) / side;
+    const uint32_t text = text_scale(side * scale);
     BhrImage       picture;
-    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, side * scale, side * scale)) {
+    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, side * scale,
+                          side * scale + COLOUR_BAR_ROWS * text)) {
         return 0;
     }
     draw_pixels(images, &picture, scale);
     annotate(images, &picture, found);
+    draw_bar(&picture, found->peak, text);
     const int saved = picture_save_into(&picture, images->s->output, name);
     free(picture.pixels);
     return saved;

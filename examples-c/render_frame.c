@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* render_frame.c -- one frame of a black hole into a file: what a host does from context to pixels, each step with its
  * check. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
+#include "colour_bar.h"
 #include "picture.h"
 #include "scene_options.h"
 
@@ -19,7 +20,7 @@ typedef struct Settings {
     int32_t     backend;
     uint32_t    adapter, threads;
     const char *output;
-    int         progress, verbose, list_adapters, help;
+    int         no_colour_bar, progress, verbose, list_adapters, help;
 } Settings;
 
 static int32_t show_progress(void *user, double fraction) {
@@ -61,7 +62,7 @@ static void print_report(const Settings *s, const BhrAdapterInfo *adapter, const
 }
 
 /* Renders into `image`, saves it and reports. */
-static int render_and_save(BhrContext *context, const Settings *s, const BhrImage *image) {
+static int render_and_save(BhrContext *context, const Settings *s, BhrImage *image) {
     Progress  progress = progress_begin(s->progress || is_terminal(stderr));
     BhrStatus status = BHR_OK;
     if (progress.shown) {
@@ -74,7 +75,12 @@ static int render_and_save(BhrContext *context, const Settings *s, const BhrImag
     if (status < 0) {
         return report_failure("render the frame", status);
     }
-    status = bhr_image_save(image, s->output);
+    if (image->format == BHR_FORMAT_RGBA8_SRGB && !s->no_colour_bar) {
+        status = colour_bar_add(context, image);
+    }
+    if (status >= 0) {
+        status = bhr_image_save(image, s->output);
+    }
     if (status < 0) {
         return report_failure("save the frame", status);
     }
@@ -165,6 +171,8 @@ static int run(int argc, char **argv) {
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
         {"--adapter", OPTION_UINT, &s.adapter, "N", "one of --list-adapters", NULL, NULL},
         {"--threads", OPTION_UINT, &s.threads, "N", "of the CPU tracer; 0: one per core", NULL, NULL},
+        {"--no-colour-bar", OPTION_FLAG, &s.no_colour_bar, NULL, "false colour without the bar that explains it", NULL,
+         NULL},
         {"--progress", OPTION_FLAG, &s.progress, NULL, "a bar on long renders, even if stderr is no terminal", NULL,
          NULL},
         {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL, NULL},

@@ -2,6 +2,7 @@
 /* viewer_pictures.c -- see viewer_pictures.h. */
 #include "viewer_pictures.h"
 
+#include "colour_bar.h"
 #include "common.h"
 #include "picture.h"
 
@@ -16,8 +17,12 @@
 #define MOST_FRAMES 18000u /* of a film, five minutes: their scenes take 48 MB */
 #define FRAMES_ROOM 600u   /* that memory is asked for at once */
 
-static BhrStatus render_and_save(BhrContext *context, const BhrImage *image, const char *path) {
+/* False colour gets its bar in files alone: windows are the library's. */
+static BhrStatus render_and_save(BhrContext *context, BhrImage *image, const char *path) {
     BhrStatus status = bhr_render_image(context, image);
+    if (status >= 0) {
+        status = colour_bar_add(context, image);
+    }
     return status < 0 ? status : bhr_image_save(image, path);
 }
 
@@ -42,8 +47,13 @@ static void save(void *argument) {
     }
 }
 
-/* Both stay as they are until the end is taken. Where there is no thread to be had, saves at once. */
-static void saving_begin(Saving *saving, const BhrImage *image) {
+/* Saving and image stay as they are until the end is taken. Where there is no thread to be had, saves at once. `context`
+ * still has the picture's scene. A picture without a bar is better than none. */
+static void saving_begin(Saving *saving, const BhrContext *context, BhrImage *image) {
+    const BhrStatus status = colour_bar_add(context, image);
+    if (status < 0) {
+        report_failure("explain a picture's colours", status);
+    }
     saving->image = image;
     if (saving->worker.system != NULL || worker_start(&saving->worker, NULL)) {
         worker_begin(&saving->worker, save, saving);
@@ -120,7 +130,7 @@ PictureEnd picture_poll(PictureJob *picture) {
         if (status >= 0) {
             picture->fraction = 1.0;
             snprintf(picture->saving.path, sizeof picture->saving.path, "%s", picture->path);
-            saving_begin(&picture->saving, &picture->image);
+            saving_begin(&picture->saving, picture->context, &picture->image);
         } else {
             report_failure("render a picture", status);
         }
@@ -276,7 +286,7 @@ static void save_frame(Recorder *recorder) {
     recorder->job = NULL;
     snprintf(recorder->saving.path, sizeof recorder->saving.path, "%s/frame-%06u.png", recorder->folder,
              recorder->begun);
-    saving_begin(&recorder->saving, &recorder->images[(recorder->begun - 1) % 2]);
+    saving_begin(&recorder->saving, recorder->context, &recorder->images[(recorder->begun - 1) % 2]);
 }
 
 /* One step on, as far as jobs and files are. NOT_READY: there is nothing to do yet. */

@@ -7,18 +7,40 @@
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
 
 struct GridLines {
+    tint: f32,
     coverage: f32,
-    origin: f32,
+    is_origin: bool,
 }
 
-fn grid_lines(coordinate: f32, change: f32, spacing: f32) -> GridLines {
+fn grid_rank(coordinate: f32, change: f32, spacing: f32) -> GridLines {
     let number = round(coordinate / spacing);
     let gap = spacing / max(change, 1e-12);
     let distance = abs(coordinate / spacing - number) * gap;
     let sharp = clamp(0.5 * GRID_WIDTH + 0.5 - distance, 0.0, 1.0);
     let open = clamp((gap - GRID_DENSE) / (GRID_OPEN - GRID_DENSE), 0.0, 1.0);
-    let tint = min(GRID_WIDTH / gap, GRID_TINT);
-    return GridLines(tint + (sharp - tint) * open, select(0.0, open, number == 0.0));
+    return GridLines(GRID_TINT * (1.0 - open), sharp * open, number == 0.0);
+}
+
+fn grid_lines(coordinate: f32, change: f32, sparse: bool) -> GridLines {
+    var lines = grid_rank(coordinate, change, GRID_RANKS.x * GRID_SPACING);
+    let second = grid_rank(coordinate, change, GRID_RANKS.y * GRID_SPACING);
+    let third = grid_rank(coordinate, change, GRID_RANKS.z * GRID_SPACING);
+    if second.coverage >= lines.coverage {
+        lines = GridLines(lines.tint, second.coverage, second.is_origin);
+    }
+    if third.coverage >= lines.coverage {
+        lines = GridLines(lines.tint, third.coverage, third.is_origin);
+    }
+    if sparse {
+        lines = third;
+    }
+    return lines;
+}
+
+// `light` under the tint and the lines of a family.
+fn under_lines(light: vec3<f32>, lines: GridLines) -> vec3<f32> {
+    let tinted = light + (GRID_COLOUR - light) * lines.tint;
+    return tinted + (select(GRID_COLOUR, GRID_ORIGIN_COLOUR, lines.is_origin) - tinted) * lines.coverage;
 }
 
 // `light` of the sky under the grid. `d`: sky axes.
@@ -32,13 +54,12 @@ fn under_grid(light: vec3<f32>, d: vec3<f32>, footprint: Footprint) -> vec3<f32>
     // Changes of right ascension and of declination, in the tangent plane.
     let east = vec2<f32>(d.x * p.y - d.y * p.x, d.x * q.y - d.y * q.x) / (rho * rho);
     let north = vec2<f32>(p.z, q.z) / rho;
-    let spacing = select(GRID_CAP_SPACING, GRID_SPACING, abs(d.z) < GRID_CAP);
-    var meridians = grid_lines(arctan2(d.y, d.x), length(vec2<f32>(dot(dx, east), dot(dy, east))), spacing);
-    var parallels = grid_lines(arctan2(d.z, rho), length(vec2<f32>(dot(dx, north), dot(dy, north))), GRID_SPACING);
+    let sparse = abs(d.z) >= GRID_CAP;
+    var meridians = grid_lines(arctan2(d.y, d.x), length(vec2<f32>(dot(dx, east), dot(dy, east))), sparse);
+    var parallels = grid_lines(arctan2(d.z, rho), length(vec2<f32>(dot(dx, north), dot(dy, north))), false);
     if !(stretch2 < GRID_WHOLE_SKY) {
-        meridians = GridLines(GRID_TINT, 0.0);
-        parallels = GridLines(GRID_TINT, 0.0);
+        meridians = GridLines(GRID_TINT, 0.0, false);
+        parallels = GridLines(GRID_TINT, 0.0, false);
     }
-    let over = light + (mix(GRID_COLOUR, GRID_ORIGIN_COLOUR, meridians.origin) - light) * meridians.coverage;
-    return over + (mix(GRID_COLOUR, GRID_ORIGIN_COLOUR, parallels.origin) - over) * parallels.coverage;
+    return under_lines(under_lines(light, meridians), parallels);
 }

@@ -30,13 +30,13 @@ observatory_image() {
     python3 "$tests/observatory/fits.py" "$folder" "$scratch/fluxes" 40 180 20 || return 1
     local ghz
     for ghz in 86 230 345; do
-        picture "$folder/sgra-${ghz}GHz.png" 640x640 100 || return 1
+        picture "$folder/sgra-${ghz}GHz.png" 640x728 100 || return 1
     done
     # Another frame, beam, target and frequency.
     observatory_says "$scratch/fluxes" image --target m87 --plain --pixels 24 --beam 0 --fov 150 --frequency 230 \
         --volume torus,power-law,radius=6,absorption=0.1,spectral-index=0.7 --volume jet --output "$folder" &&
         python3 "$tests/observatory/fits.py" "$folder" "$scratch/fluxes" 24 150 0 &&
-        picture "$folder/m87-230GHz.png" 648x648 50
+        picture "$folder/m87-230GHz.png" 648x736 50
 }
 
 # Reads the files with astropy, as observers do.

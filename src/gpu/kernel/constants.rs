@@ -297,7 +297,7 @@ fn all() -> Vec<(&'static str, String)> {
         SHIFT_COLOURS: u32 = shift::SHIFT_COLOURS;
         SHIFT_SCALE: f32 = shift::SHIFT_SCALE;
         GRID_SPACING: f32 = grid::GRID_SPACING;
-        GRID_CAP_SPACING: f32 = grid::GRID_CAP_SPACING;
+        GRID_RANKS: vec3 = grid::GRID_RANKS;
         GRID_CAP: f32 = grid::GRID_CAP;
         GRID_WIDTH: f32 = grid::GRID_WIDTH;
         GRID_OPEN: f32 = grid::GRID_OPEN;

@@ -237,7 +237,7 @@ pub fn group() -> Group {
         ),
         twin(
             grid,
-            "under_grid grid_lines",
+            "under_grid under_lines grid_lines grid_rank",
             "out3(under_grid(in3(9u), in3(0u), in_footprint()));",
             |i| {
                 any_pixel(i);

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* colour_bar.h -- what the colours of a false-colour picture mean: a bar of them with numbers and a unit, written into
+ * the picture. The colours of views are those of docs/views.md. Knows no context. */
+#ifndef EXAMPLES_COLOUR_BAR_H
+#define EXAMPLES_COLOUR_BAR_H
+
+#include "picture.h"
+
+#include <stddef.h>
+
+#define MOST_MARKS 8u
+#define COLOUR_BAR_ROWS 44u
+
+/* A number beside the bar. */
+typedef struct Mark {
+    double share; /* of the way along the bar, 0 to 1 */
+    char   text[16];
+} Mark;
+
+typedef struct ColourBar {
+    const char *title;    /* the quantity and its unit */
+    const char *no_value; /* what grey means; NULL: nothing is grey */
+    void (*colour)(double share, unsigned char rgb[3]);
+    uint32_t steps;       /* so many even fields, each with its mark in the middle; 0: a gradient */
+    uint32_t count;       /* of the marks */
+    Mark     marks[MOST_MARKS];
+} ColourBar;
+
+/* afmhot of gnuplot and matplotlib, in which the Event Horizon Telescope publishes: BHR_COLOUR_MAP_AFMHOT. */
+void colour_afmhot(double share, unsigned char rgb[3]);
+
+/* The colours of a view. 0 for BHR_VIEW_LIGHT and for views that this program does not know, which get no bar. */
+int colour_bar_of_view(BhrView view, ColourBar *bar);
+
+/* The colours of a film's colour map, along developed light. 0 for BHR_COLOUR_MAP_NONE. */
+int colour_bar_of_film(const BhrFilm *film, ColourBar *bar);
+
+/* The place of a view's value along its bar, 0 to 1; what lies beyond the ends is put there. */
+double colour_bar_share(BhrView view, double value);
+
+/* Marks at about five round values from 0 to `most`, which is above 0, at the bar's end. */
+void colour_bar_mark(ColourBar *bar, double most);
+
+/* Writes the bar into the last rows of an 8-bit picture, COLOUR_BAR_ROWS times `scale` of them, which become dark
+ * behind it. `scale`: of the text, as for picture_write. */
+void colour_bar_draw(BhrImage *image, const ColourBar *bar, uint32_t scale);
+
+/* The bar that a context's frames need: that of their view, else that of their film's colour map, else one without
+ * marks. */
+BhrStatus colour_bar_of_frames(const BhrContext *context, ColourBar *bar);
+
+/* Draws a bar that has marks. The rows that it takes: none in pictures of less than 300 x 150 pixels, in which no text
+ * could be read. */
+uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar);
+
+/* Both, for a picture of the scene as it is set. */
+BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image);
+
+#endif
