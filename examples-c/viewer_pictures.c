@@ -47,8 +47,8 @@ static void save(void *argument) {
     }
 }
 
-/* Saving and image stay as they are until the end is taken. Where there is no thread to be had, saves at once. `context`
- * still has the picture's scene. A picture without a bar is better than none. */
+/* Saving and image stay as they are until the end is taken. Where there is no thread to be had, saves at once. The
+ * context still has the picture's scene. A picture without a bar is better than none. */
 static void saving_begin(Saving *saving, const BhrContext *context, BhrImage *image) {
     const BhrStatus status = colour_bar_add(context, image);
     if (status < 0) {

@@ -900,13 +900,12 @@ BHR_NODISCARD BhrStatus bhr_image_convert(BhrImage *image, BhrColourSpace colour
 
 /** Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), RGB10A2 to .png of 16 bits without
  * alpha, float formats to .exr, which says what its primaries are; R32F becomes grey. Alpha is written as it is. A
- * .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags, as when the frame was rendered, they
- * are divided by alpha. The file appears whole or not at all; one that is replaced keeps its mode and, where the
- * process may set it, its owner, and where path is a symbolic link, its target is written (docs/files.md).
+ * .png's colours are not premultiplied: with BHR_IMAGE_TRANSPARENT in the flags they are divided by alpha. The file
+ * appears whole or not at all; one that is replaced keeps its mode and, where possible, its owner, and a symbolic
+ * link's target is written (docs/files.md).
  * Errors: UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was
  * built without EXR; IO, with the path in the message, also for an older file that this process may not write, for
- * another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk or a
- * quota. */
+ * another user's symbolic link in a sticky folder that all may write, and for a full disk or a quota. */
 BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
 /** Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the

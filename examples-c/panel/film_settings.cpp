@@ -18,9 +18,12 @@ const Names CURVE = {"--tone-map"};
 const Names FILMIC = {"--toe-strength", "--toe-length", "--shoulder-strength", "--shoulder-length",
                       "--shoulder-angle"};
 const Names GRADE = {"--white-balance", "--tint", "--contrast", "--saturation"};
-const Names LENS = {"--bloom", "--beam-fwhm", "--vignette"};
+const Names LENS = {"--bloom", "--beam-fwhm", "--vignette", "--spikes", "--streak"};
+const Names SPIKES = {"--spike-blades", "--spike-angle", "--spike-length"};
+const Names STREAK = {"--streak-length", "--streak-tint"};
 const Names GRAIN = {"--grain", "--grain-seed"};
 const Names LUT = {"--lut-strength", "--colour-map"};
+const Names HDR = {"--paper-white", "--peak"};
 
 bool holds(const Names &names, const Field &field) {
     return std::any_of(names.begin(), names.end(),
@@ -28,7 +31,8 @@ bool holds(const Names &names, const Field &field) {
 }
 
 bool has_group(const Field &field) {
-    for (const Names *names : {&EXPOSURE, &METER, &LOCAL, &CURVE, &FILMIC, &GRADE, &LENS, &GRAIN, &LUT}) {
+    for (const Names *names :
+         {&EXPOSURE, &METER, &LOCAL, &CURVE, &FILMIC, &GRADE, &LENS, &SPIKES, &STREAK, &GRAIN, &LUT, &HDR}) {
         if (holds(*names, field)) {
             return true;
         }
@@ -99,6 +103,12 @@ void SettingsPanel::film(Scene &scene) {
     }
     if (section("Lens", true)) {
         film_fields(scene, of(LENS));
+        ImGui::BeginDisabled(scene.film().spikes == 0.0);
+        film_fields(scene, of(SPIKES));
+        ImGui::EndDisabled();
+        ImGui::BeginDisabled(scene.film().streak == 0.0);
+        film_fields(scene, of(STREAK));
+        ImGui::EndDisabled();
     }
     if (section("Grain", true)) {
         film_fields(scene, of(GRAIN));
@@ -108,6 +118,10 @@ void SettingsPanel::film(Scene &scene) {
              "a .cube file, asked for by Enter; empty: none. A scene's file may bring a LUT whose name this row does "
              "not show\n\nbhr_set_film_lut_file in bhr.h; docs/colour-and-film.md\nCube LUT Specification 1.0, Adobe");
         film_fields(scene, of(LUT));
+    }
+    // The panel's pictures have 8 bits: these are for scenes that are saved.
+    if (section("High dynamic range", false)) {
+        film_fields(scene, of(HDR));
     }
     if (any_without_group() && section("More", true)) {
         film_fields(scene, [](const Field &field) { return !has_group(field); });

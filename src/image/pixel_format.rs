@@ -15,7 +15,7 @@ pub enum PixelFormat {
     R32F = 5,
     /// Ten bits of red, green, blue, two of alpha, from the lowest bit on: PQ, Rec. 2020 primaries.
     Rgb10A2Pq = 6,
-    /// The same bits: HLG.
+    /// HLG in the bits of `Rgb10A2Pq`.
     Rgb10A2Hlg = 7,
 }
 
