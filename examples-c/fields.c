@@ -270,20 +270,21 @@ const Field FILM_FIELDS[] = {
     {"--lut-strength", OPTION_DOUBLE, offsetof(BhrFilm, lut_strength), NULL, 0, 1, "0 .. 1",
      "0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off", NULL},
     {"--spikes", OPTION_DOUBLE, offsetof(BhrFilm, spikes), NULL, 0, 1, "0 .. 1",
-     "diffraction spikes, 0 .. 1, 0 off: the lens throws 0.4 spikes of each pixel's light along the lines that the "
-     "edges of spike_blades make, reddish at their ends", NULL},
+     "diffraction spikes, 0 .. 1, 0 off: the lens throws 0.4 spikes of each pixel's light along lines that lie "
+     "across the edges of the aperture's blades; they are reddish", NULL},
     {"--spike-angle", OPTION_DEGREES, offsetof(BhrFilm, spike_angle), "rad", 0, 0, NULL,
      "the direction of one spike", NULL},
     {"--spike-length", OPTION_DOUBLE, offsetof(BhrFilm, spike_length), NULL, 0.01, 2, "0.01 .. 2",
-     "how far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length)", NULL},
+     "the length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 "
+     ".. 2", NULL},
     {"--streak", OPTION_DOUBLE, offsetof(BhrFilm, streak), NULL, 0, 1, "0 .. 1",
      "the horizontal streak of an anamorphic lens, 0 .. 1, 0 off: 0.4 streak of each pixel's light is thrown to its "
      "left and right", NULL},
     {"--streak-length", OPTION_DOUBLE, offsetof(BhrFilm, streak_length), NULL, 0.01, 4, "0.01 .. 4",
-     "how far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length)",
+     "the length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4",
      NULL},
     {"--streak-tint", OPTION_DOUBLE, offsetof(BhrFilm, streak_tint), NULL, 0, 0, NULL,
-     "the streak's colour, -1 amber .. 1 blue", NULL},
+     "the streak's colour: -1 amber, 0 that of the light, 1 blue", NULL},
     {"--paper-white", OPTION_DOUBLE, offsetof(BhrFilm, paper_white), NULL, 10, 1000, "10 .. 1000",
      "BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000", NULL},
     {"--peak", OPTION_DOUBLE, offsetof(BhrFilm, peak), NULL, 100, 10000, "100 .. 10000",

@@ -23,7 +23,7 @@
 #define SCENE_QUALITY 4096u
 #define ALL_OF_SCENE 8191u
 
-#define MOST_OPTIONS 96u
+#define MOST_OPTIONS 160u
 
 /* A scene as the command line describes it. */
 typedef struct SceneInput {

@@ -31,7 +31,7 @@ class BhrContextOptions(ctypes.Structure):
 class BhrImage(ctypes.Structure):
     _fields_ = [("struct_size", c_uint32), ("format", c_int32), ("width", c_uint32), ("height", c_uint32),
                 ("pixels", c_void_p), ("row_stride", c_int64), ("byte_size", c_uint64), ("flags", c_uint32),
-                ("reserved", c_uint32)]
+                ("reserved", c_uint32), ("colour_space", c_int32), ("reserved2", c_uint32)]
 
 
 class BhrTargetOptions(ctypes.Structure):

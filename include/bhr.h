@@ -502,8 +502,9 @@ typedef struct BhrCamera {
     double eye_distance;
     /** BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
      * stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and
-     * a beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the
-     * GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md. @since 0.2.0 */
+     * all else of a film that regions cannot have, are INVALID_STATE; windows, bhr_project_point, outputs other than
+     * LIGHT, occluders and targets on the GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE.
+     * docs/cameras.md. @since 0.2.0 */
     BhrEye eye;
     uint32_t reserved2; /**< Reserved: 0. @since 0.2.0 */
     /** BHR_CHART_*: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths
@@ -968,7 +969,7 @@ BHR_NODISCARD BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * linear Rec. 709, 8-bit formats are decoded; NaN and negative numbers are 0, alpha is ignored. Pictures of more
  * than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device
  * to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. docs/maps.md.
- * Errors: INVALID_ARGUMENT for R32F. */
+ * Errors: INVALID_ARGUMENT for R32F and RGB10A2. */
 BHR_NODISCARD BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
 /** Gives BHR_SKY_MAP the picture in a file that bhr_image_load reads, as bhr_set_sky_map does one in memory. The path
@@ -1011,13 +1012,14 @@ typedef struct BhrFilm {
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
     double exposure_ev;   /**< Stops, -20 .. 20. Default 0. */
     /** Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
-     * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
+     * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8- and 10-bit
      * images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
      * was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md. */
     double bloom;
     /** The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
-     * frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are
-     * INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md. @since 0.2.0 */
+     * frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8- and 10-bit images of
+     * light are INVALID_STATE when they are rendered, also when a preset set the beam.
+     * docs/colour-and-film.md. @since 0.2.0 */
     double beam_fwhm;
     BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0 */
     /** Blades of the lens's aperture, 3 .. 8: an even number of them makes as many spikes, an odd one twice as many.
@@ -1050,7 +1052,7 @@ typedef struct BhrFilm {
     /** Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
      * frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
      * exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
-     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
+     * added. With a region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
     double auto_exposure;
     /** The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0 */
     double auto_percentile;
@@ -1065,13 +1067,13 @@ typedef struct BhrFilm {
      * context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
      * time constant T it is 1 - exp(-t / T). @since 0.2.0 */
     double auto_adaptation;
-    /** Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
-     * their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
-     * rendered. @since 0.2.0 */
+    /** Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the
+     * picture come; their structure stays. Default 0: off. With a region set, 8- and 10-bit images of light
+     * are INVALID_STATE when they are rendered. @since 0.2.0 */
     double highlights;
     /** Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
      * Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
-     * region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
+     * region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0 */
     double shadows;
     /** Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
      * Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
@@ -1082,23 +1084,24 @@ typedef struct BhrFilm {
     /** 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
      * @since 0.2.0 */
     double lut_strength;
-    /** Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
-     * that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images
-     * of light are INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0 */
+    /** Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along
+     * lines that lie across the edges of the aperture's blades; they are reddish. No light is lost. With a
+     * region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
+     * docs/colour-and-film.md. @since 0.2.0 */
     double spikes;
     /** The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0. @since 0.2.0 */
     double spike_angle;
-    /** How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
-     * Default 0.25. @since 0.2.0 */
+    /** The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights,
+     * 0.01 .. 2. Default 0.25. @since 0.2.0 */
     double spike_length;
-    /** The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is
-     * thrown to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when
-     * they are rendered. docs/colour-and-film.md. @since 0.2.0 */
+    /** The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light
+     * is thrown to its left and right. No light is lost. With a region set, 8- and 10-bit images of light are
+     * INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0 */
     double streak;
-    /** How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    /** The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
      * Default 0.5. @since 0.2.0 */
     double streak_length;
-    double streak_tint; /**< The streak's colour, -1 amber .. 1 blue. Default 0: that of the light. @since 0.2.0 */
+    double streak_tint; /**< The streak's colour: -1 amber, 0 (default) that of the light, 1 blue. @since 0.2.0 */
     /** BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203,
      * as in ITU-R BT.2408. @since 0.2.0 */
     double paper_white;
@@ -1318,7 +1321,7 @@ BHR_NODISCARD BhrStatus bhr_get_view(const BhrContext *context, BhrView *out_vie
 /* ---- parts of a larger frame ---- */
 
 /** The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
- * have the same bytes as the frame, unless that has glare (BhrFilm.bloom). */
+ * have the same bytes as the frame, unless its film needs the light of the whole frame (see bhr_set_region). */
 typedef struct BhrRegion {
     uint32_t struct_size; /**< sizeof(BhrRegion). */
     uint32_t full_width;  /**< Pixels of the whole frame, 1 .. 2^20. */
@@ -1331,9 +1334,10 @@ typedef struct BhrRegion {
 /** Sets struct_size and clears the rest: the frame's size has no default. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_region_init(BhrRegion *region, size_t struct_size);
 
-/** Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
- * is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and INVALID_STATE for
- * 8-bit images of light with a film that has glare or a beam (see BhrFilm.bloom). */
+/** Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not.
+ * Rendering is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and
+ * INVALID_STATE for 8- and 10-bit images of light with a film that needs the light of the whole frame: bloom
+ * (see there), a beam, spikes, a streak, auto exposure, highlights or shadows. */
 BHR_NODISCARD BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 
 /** Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
@@ -1411,9 +1415,10 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * written an error leaves the target alone; after that the message says so, and what is not yet rendered is
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
- * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times as
- * wide as high, or for bloom, a beam, auto_exposure, highlights or shadows with a region set; UNSUPPORTED inside a
- * spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the progress callback. */
+ * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times
+ * as wide as high, or for bloom, a beam, spikes, a streak, auto_exposure, highlights or shadows with a region
+ * set; UNSUPPORTED inside a spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the
+ * progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /** Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -1557,7 +1562,7 @@ BHR_NODISCARD BhrStatus bhr_render_outputs(BhrContext *context, const BhrOutput 
  * last 512 images of this context, of the scene as it is now. docs/files.md lists channels and attributes. Alpha is
  * written as it is. A file is replaced as bhr_image_save does it.
  * Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
- * UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.
+ * UNSUPPORTED for another extension, LIGHT in a format of 8 or 10 bits, or a library that was built without EXR; IO.
  * @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_save_outputs(const BhrContext *context, const BhrOutput *outputs, size_t output_size,
                                          uint32_t count, const char *path);

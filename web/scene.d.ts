@@ -102,9 +102,9 @@ export interface Camera {
     eye_distance: number;
     /**
      * One of Eye. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
-     * stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and a
-     * beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the GPU
-     * are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md.
+     * stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and all
+     * else of a film that regions cannot have, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT,
+     * occluders and targets on the GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md.
      * @default "middle"
      */
     eye: Eye;
@@ -486,17 +486,17 @@ export interface Film {
     exposure_ev: number;
     /**
      * Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
-     * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit images
-     * of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was made, or
-     * after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
+     * at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8- and 10-bit
+     * images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was
+     * made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
      * @range 0 .. 1
      * @default 0.25
      */
     bloom: number;
     /**
      * The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
-     * heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are INVALID_STATE
-     * when they are rendered, also when a preset set the beam. docs/colour-and-film.md.
+     * heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8- and 10-bit images of light are
+     * INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md.
      * @range 0 .. 1 frame height
      * @default 0
      */
@@ -581,7 +581,7 @@ export interface Film {
      * Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
      * frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
      * exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
-     * added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
+     * added. With a region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
      * @range 0 .. 1
      * @default 0
      */
@@ -621,8 +621,8 @@ export interface Film {
     auto_adaptation: number;
     /**
      * Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
-     * their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
-     * rendered.
+     * their structure stays. Default 0: off. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+     * they are rendered.
      * @range 0 .. 1
      * @default 0
      */
@@ -630,7 +630,7 @@ export interface Film {
     /**
      * Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
      * Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
-     * region set, 8-bit images of light are INVALID_STATE when they are rendered.
+     * region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
      * @range 0 .. 1
      * @default 0
      */
@@ -656,9 +656,9 @@ export interface Film {
      */
     lut_strength: number;
     /**
-     * Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
-     * that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images of
-     * light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
+     * Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along lines that
+     * lie across the edges of the aperture's blades; they are reddish. No light is lost. With a region set, 8- and
+     * 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
      * @range 0 .. 1
      * @default 0
      */
@@ -670,29 +670,29 @@ export interface Film {
      */
     spike_angle: number;
     /**
-     * How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length). Default
-     * 0.25.
+     * The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 .. 2.
+     * Default 0.25.
      * @range 0.01 .. 2
      * @default 0.25
      */
     spike_length: number;
     /**
      * The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
-     * to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when they are
-     * rendered. docs/colour-and-film.md.
+     * to its left and right. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+     * they are rendered. docs/colour-and-film.md.
      * @range 0 .. 1
      * @default 0
      */
     streak: number;
     /**
-     * How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+     * The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
      * Default 0.5.
      * @range 0.01 .. 4
      * @default 0.5
      */
     streak_length: number;
     /**
-     * The streak's colour, -1 amber .. 1 blue. Default 0: that of the light.
+     * The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
      * @default 0
      */
     streak_tint: number;
@@ -766,7 +766,7 @@ export interface Quality {
 
 /**
  * The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
- * the same bytes as the frame, unless that has glare (BhrFilm.bloom).
+ * the same bytes as the frame, unless its film needs the light of the whole frame (see bhr_set_region).
  */
 export interface Region {
     /**

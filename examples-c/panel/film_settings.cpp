@@ -120,7 +120,7 @@ void SettingsPanel::film(Scene &scene) {
         film_fields(scene, of(LUT));
     }
     // The panel's pictures have 8 bits: these are for scenes that are saved.
-    if (section("High dynamic range", false)) {
+    if (section("High dynamic range", true)) {
         film_fields(scene, of(HDR));
     }
     if (any_without_group() && section("More", true)) {

@@ -269,19 +269,20 @@ struct Film {
     double grain_seed;
     /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off.
     double lut_strength;
-    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
-    /// that the edges of spike_blades make, reddish at their ends.
+    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along lines that
+    /// lie across the edges of the aperture's blades; they are reddish.
     double spikes;
     /// The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi.
     double spike_angle;
-    /// How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
+    /// The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 ..
+    /// 2.
     double spike_length;
     /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
     /// to its left and right.
     double streak;
-    /// How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    /// The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
     double streak_length;
-    /// The streak's colour, -1 amber .. 1 blue.
+    /// The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
     double streak_tint;
     /// BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000.
     double paper_white;

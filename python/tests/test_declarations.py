@@ -33,6 +33,7 @@ ENUMS = {
     "BHR_TONE_MAP_": bhr.ToneMap,
     "BHR_TRANSPORT_": bhr.Transport,
     "BHR_COLOUR_MAP_": bhr.ColourMap,
+    "BHR_COLOUR_SPACE_": bhr.ColourSpace,
     "BHR_EFFECT_": bhr.Effects,
     "BHR_PRESET_": bhr.Preset,
     "BHR_PRESET_MATTER_": bhr.PresetMatter,

@@ -57,6 +57,32 @@ def test_formats(ctx, format, dtype):
         assert np.allclose(frame.array.astype(np.float32), exact, rtol=1e-3, atol=1e-6)
 
 
+@pytest.mark.parametrize("format", ["RGB10A2_PQ", "RGB10A2_HLG"])
+def test_high_dynamic_range(ctx, format, tmp_path):
+    frame = ctx.render(32, 18, format=format)
+    assert frame.array.dtype == np.uint32 and frame.array.shape == (18, 32)
+    assert (frame.array >> 30 == 3).all() and (frame.array & 1023).max() > 300
+    again = ctx.render(out=np.zeros((18, 32), np.uint32), format=format)
+    assert np.array_equal(again.array, frame.array)
+    frame.save(tmp_path / "hdr.png")
+    assert bhr.load(tmp_path / "hdr.png").format is bhr.Format.RGBA32F
+
+
+def test_light_in_other_primaries(ctx, tmp_path):
+    frame = ctx.render(32, 18, format="RGBA32F")
+    light = frame.array.copy()
+    frame.convert("ACESCG")
+    assert frame.colour_space is bhr.ColourSpace.ACESCG
+    rows = [[0.613097, 0.339523, 0.047379], [0.070194, 0.916354, 0.013452], [0.020616, 0.109570, 0.869815]]
+    assert np.allclose(frame.array[..., :3], light[..., :3] @ np.array(rows).T, rtol=1e-5, atol=1e-6)
+    frame.save(tmp_path / "acescg.exr")
+    assert np.allclose(bhr.load(tmp_path / "acescg.exr").array, light, rtol=1e-4, atol=1e-5)
+    with pytest.raises(bhr.InvalidArgument, match="colour_space"):
+        ctx.render(out=frame)
+    with pytest.raises(bhr.InvalidArgument, match="RGBA8_SRGB"):
+        ctx.render(4, 3).convert("REC2020")
+
+
 def test_out_with_any_stride(any_ctx):
     whole = any_ctx.render(32, 18).array
     wide = np.full((20, 40, 4), 7, np.uint8)

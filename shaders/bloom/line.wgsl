@@ -24,17 +24,25 @@ struct SpikeLine {
     above: f32,
 }
 
-// The rows that cell `j` along the axis lies beyond the first one's.
+// The rows that cell `j` along the axis lies beyond the first one's: the nearest whole number.
 fn whole_rows(j: u32) -> i32 {
-    return (line.slope * i32(j)) >> 16u;
+    return (line.slope * i32(j) + 32768) >> 16u;
 }
 
-// The part of a row that cell `j` lies beyond that.
-fn part_of_row(j: u32) -> f32 {
-    return f32(u32(line.slope * i32(j)) & 0xffffu) / 65536.0;
+// The shares that the row before that, it, and the next have of cell `j`.
+fn row_shares(j: u32) -> vec3<f32> {
+    let beyond = f32(line.slope * i32(j) - whole_rows(j) * 65536) / 65536.0;
+    let before = 0.5 - beyond;
+    let after = 0.5 + beyond;
+    return vec3<f32>(0.5 * before * before, 0.75 - beyond * beyond, 0.5 * after * after);
+}
+
+// The number of rows that are kept of every element.
+fn rows_kept() -> i32 {
+    return i32(line.across + 2u * line.step + 2u);
 }
 
 // Where the light of an element in a sheared row is kept, rows across from the first one kept.
 fn row_kept(element: u32, row: i32) -> i32 {
-    return row + whole_rows(element * line.step) + i32(line.step);
+    return row + whole_rows(element * line.step) + i32(line.step) + 1;
 }

@@ -24,7 +24,9 @@ fn add_line(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let element = j / line.step;
     let row = i32(i) - whole_rows(j);
-    let light = mix(kept_light(element, row), kept_light(element, row - 1), part_of_row(j));
+    let shares = row_shares(j);
+    let light = shares.x * kept_light(element, row + 1) + shares.y * kept_light(element, row)
+        + shares.z * kept_light(element, row - 1);
     let sum = line.above * textureLoad(glare, id.xy, 0).xyz + light;
     textureStore(spread, id.xy, rounded_to_f16(vec4<f32>(sum, 1.0)));
 }

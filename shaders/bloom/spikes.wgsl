@@ -44,8 +44,8 @@ fn element_light(element: u32, row: i32) -> vec4<f32> {
     let end = min(first + line.step, line.along);
     for (var j = first; j < end; j += 1u) {
         let i = row + whole_rows(j);
-        let part = part_of_row(j);
-        sum += (1.0 - part) * cell_light(j, i) + part * cell_light(j, i + 1);
+        let shares = row_shares(j);
+        sum += shares.x * cell_light(j, i - 1) + shares.y * cell_light(j, i) + shares.z * cell_light(j, i + 1);
     }
     return sum;
 }
@@ -53,7 +53,7 @@ fn element_light(element: u32, row: i32) -> vec4<f32> {
 // Keeps what an element has after the line: what reached it, and of its own light what would leave the frame.
 fn keep(element: u32, row: i32, light: vec4<f32>, spread: vec3<f32>, kept: vec3<f32>) {
     let across = row_kept(element, row);
-    if element < line.elements && across >= 0 && across < i32(line.across + 2u * line.step) {
+    if element < line.elements && across >= 0 && across < rows_kept() {
         let staying = select(vec3<f32>(0.0), (line.share - kept) * light.xyz / light.w, light.w > 0.0);
         sheared[element * line.next_along + u32(across) * line.next_across] = vec4<f32>(spread + staying, 0.0);
     }

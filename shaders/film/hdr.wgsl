@@ -25,13 +25,14 @@ fn rolled_off(code: f32) -> f32 {
 }
 
 fn display_light(scene: vec3<f32>) -> vec3<f32> {
-    let light = min(scene, vec3<f32>(MAX_SCENE_LIGHT)) * film.hdr_white;
+    let given = min(scene, vec3<f32>(MAX_SCENE_LIGHT)) * film.hdr_white;
+    let wide = vec3<f32>(
+        dot(film.primaries_red.xyz, given), dot(film.primaries_green.xyz, given), dot(film.primaries_blue.xyz, given));
+    let light = max(wide, vec3<f32>(0.0));
     let brightest = max(max(light.x, light.y), light.z);
     let shown = pq_decode(rolled_off(pq_encode(min(brightest, 1.0))));
     let factor = select(0.0, shown / brightest, brightest > 0.0);
-    let wide = vec3<f32>(
-        dot(film.primaries_red.xyz, light), dot(film.primaries_green.xyz, light), dot(film.primaries_blue.xyz, light));
-    return max(wide, vec3<f32>(0.0)) * factor;
+    return light * factor;
 }
 
 fn hlg_encode(light: f32) -> f32 {

@@ -101,8 +101,9 @@ pub struct BhrCamera {
     pub eye_distance: f64,
     /// BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
     /// stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and
-    /// a beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the
-    /// GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md. @since 0.2.0
+    /// all else of a film that regions cannot have, are INVALID_STATE; windows, bhr_project_point, outputs other than
+    /// LIGHT, occluders and targets on the GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE.
+    /// docs/cameras.md. @since 0.2.0
     pub eye: BhrEye,
     /// Reserved: 0. @since 0.2.0
     pub reserved2: u32,

@@ -50,13 +50,14 @@ pub struct BhrFilm {
     /// Stops, -20 .. 20. Default 0.
     pub exposure_ev: f64,
     /// Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
-    /// at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit
+    /// at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8- and 10-bit
     /// images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
     /// was made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
     pub bloom: f64,
     /// The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in
-    /// frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are
-    /// INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md. @since 0.2.0
+    /// frame heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8- and 10-bit images of
+    /// light are INVALID_STATE when they are rendered, also when a preset set the beam.
+    /// docs/colour-and-film.md. @since 0.2.0
     pub beam_fwhm: f64,
     /// BHR_COLOUR_MAP_*. Default NONE. @since 0.2.0
     pub colour_map: BhrColourMap,
@@ -91,7 +92,7 @@ pub struct BhrFilm {
     /// Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
     /// frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
     /// exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
-    /// added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
+    /// added. With a region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
     pub auto_exposure: f64,
     /// The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90. @since 0.2.0
     pub auto_percentile: f64,
@@ -107,13 +108,13 @@ pub struct BhrFilm {
     /// context measured. Default 1: all of it, so that a picture depends on its scene alone. For frames t apart and a
     /// time constant T it is 1 - exp(-t / T). @since 0.2.0
     pub auto_adaptation: f64,
-    /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
-    /// their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
-    /// rendered. @since 0.2.0
+    /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the
+    /// picture come; their structure stays. Default 0: off. With a region set, 8- and 10-bit images of light
+    /// are INVALID_STATE when they are rendered. @since 0.2.0
     pub highlights: f64,
     /// Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
     /// Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
-    /// region set, 8-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
+    /// region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. @since 0.2.0
     pub shadows: f64,
     /// Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
     /// Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
@@ -124,23 +125,24 @@ pub struct BhrFilm {
     /// 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
     /// @since 0.2.0
     pub lut_strength: f64,
-    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
-    /// that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images
-    /// of light are INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0
+    /// Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along
+    /// lines that lie across the edges of the aperture's blades; they are reddish. No light is lost. With a
+    /// region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
+    /// docs/colour-and-film.md. @since 0.2.0
     pub spikes: f64,
     /// The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0. @since 0.2.0
     pub spike_angle: f64,
-    /// How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length).
-    /// Default 0.25. @since 0.2.0
+    /// The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights,
+    /// 0.01 .. 2. Default 0.25. @since 0.2.0
     pub spike_length: f64,
-    /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is
-    /// thrown to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when
-    /// they are rendered. docs/colour-and-film.md. @since 0.2.0
+    /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light
+    /// is thrown to its left and right. No light is lost. With a region set, 8- and 10-bit images of light are
+    /// INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0
     pub streak: f64,
-    /// How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    /// The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
     /// Default 0.5. @since 0.2.0
     pub streak_length: f64,
-    /// The streak's colour, -1 amber .. 1 blue. Default 0: that of the light. @since 0.2.0
+    /// The streak's colour: -1 amber, 0 (default) that of the light, 1 blue. @since 0.2.0
     pub streak_tint: f64,
     /// BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203,
     /// as in ITU-R BT.2408. @since 0.2.0

@@ -218,6 +218,9 @@ unsafe fn read_in_space<'a>(image: *const BhrImage, name: &str) -> Result<(HostI
     let space = colour_space_of(given.colour_space)?;
     // SAFETY: as above.
     let read = unsafe { pixels_of(&BhrImage { colour_space: BHR_COLOUR_SPACE_REC709, ..given }, name, 0) }?;
+    if space != ColourSpace::Rec709 {
+        ColourSpace::check_format(read.pixels.format())?;
+    }
     Ok((read, space))
 }
 

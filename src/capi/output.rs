@@ -259,7 +259,7 @@ pub unsafe extern "C" fn bhr_render_outputs(
 /// last 512 images of this context, of the scene as it is now. docs/files.md lists channels and attributes. Alpha is
 /// written as it is. A file is replaced as bhr_image_save does it.
 /// Errors: INVALID_ARGUMENT as bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F;
-/// UNSUPPORTED for another extension, LIGHT in an 8-bit format, or a library that was built without EXR; IO.
+/// UNSUPPORTED for another extension, LIGHT in a format of 8 or 10 bits, or a library that was built without EXR; IO.
 /// @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_save_outputs(

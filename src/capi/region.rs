@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::scene::Region;
 
 /// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
-/// have the same bytes as the frame, unless that has glare (BhrFilm.bloom).
+/// have the same bytes as the frame, unless its film needs the light of the whole frame (see bhr_set_region).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrRegion {
@@ -62,9 +62,10 @@ pub unsafe extern "C" fn bhr_region_init(region: *mut BhrRegion, struct_size: us
     anywhere("bhr_region_init", || unsafe { versioned::init(region, "region", struct_size) })
 }
 
-/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Rendering
-/// is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and INVALID_STATE for
-/// 8-bit images of light with a film that has glare or a beam (see BhrFilm.bloom).
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not.
+/// Rendering is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and
+/// INVALID_STATE for 8- and 10-bit images of light with a film that needs the light of the whole frame: bloom
+/// (see there), a beam, spikes, a streak, auto exposure, highlights or shadows.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -126,7 +126,7 @@ pub unsafe extern "C" fn bhr_get_sky(context: *const BhrContext, sky: *mut BhrSk
 /// linear Rec. 709, 8-bit formats are decoded; NaN and negative numbers are 0, alpha is ignored. Pictures of more
 /// than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device
 /// to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. docs/maps.md.
-/// Errors: INVALID_ARGUMENT for R32F.
+/// Errors: INVALID_ARGUMENT for R32F and RGB10A2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

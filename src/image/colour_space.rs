@@ -31,18 +31,26 @@ impl ColourSpace {
     /// Rows of the matrix from light in this space to light in another; white stays white, by Bradford's adaptation.
     pub fn to(self, other: Self) -> [[f64; 3]; 3] {
         let (there, here) = (other.primaries().rows_from_rec709(), self.primaries().rows_to_rec709());
-        there.map(|row| std::array::from_fn(|c| (0..3).map(|k| row[k] * here[k][c]).sum()))
+        // Zeros that rounding has made others would make light negative.
+        let sound = |v: f64| if v.abs() < 1e-12 { 0.0 } else { v };
+        there.map(|row| std::array::from_fn(|c| sound((0..3).map(|k| row[k] * here[k][c]).sum())))
+    }
+
+    /// Errors: INVALID_ARGUMENT for a format without linear light.
+    pub fn check_format(format: PixelFormat) -> Result<()> {
+        if matches!(format, PixelFormat::Rgba16F | PixelFormat::Rgba32F) {
+            return Ok(());
+        }
+        Err(Error::argument(format!(
+            "image format is {format}; only RGBA16F and RGBA32F hold linear light, which has a colour space"
+        )))
     }
 
     /// Converts an image's light in place. Alpha stays; values that are no numbers stay so. Errors: INVALID_ARGUMENT
     /// for a format without linear light.
     pub fn convert(self, image: &mut ImageMut<'_>, to: Self) -> Result<()> {
         let format = image.format();
-        if !matches!(format, PixelFormat::Rgba16F | PixelFormat::Rgba32F) {
-            return Err(Error::argument(format!(
-                "image format is {format}; only RGBA16F and RGBA32F hold linear light, which has a colour space"
-            )));
-        }
+        Self::check_format(format)?;
         if self == to {
             return Ok(());
         }

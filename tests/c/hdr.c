@@ -50,7 +50,13 @@ static double pq_light(double code) {
 static void display(const float *rgb, double exposure, double white, double peak, double shown[3]) {
     double most = 0, in[3];
     for (int c = 0; c < 3; c++) {
-        in[c] = rgb[c] * exposure * white / 10000, most = fmax(most, in[c]);
+        in[c] = rgb[c] * exposure * white / 10000;
+    }
+    shown[0] = 0.627404 * in[0] + 0.329283 * in[1] + 0.043313 * in[2];
+    shown[1] = 0.069097 * in[0] + 0.919540 * in[1] + 0.011362 * in[2];
+    shown[2] = 0.016391 * in[0] + 0.088013 * in[1] + 0.895595 * in[2];
+    for (int c = 0; c < 3; c++) {
+        most = fmax(most, shown[c]);
     }
     const double e = pq_code(peak / 10000), knee = 1.5 * e - 0.5, code = pq_code(fmin(most, 1));
     const double t = (code - knee) / (1 - knee);
@@ -58,9 +64,9 @@ static void display(const float *rgb, double exposure, double white, double peak
     const double bent = (2 * t3 - 3 * t2 + 1) * knee + (t3 - 2 * t2 + t) * (1 - knee) + (3 * t2 - 2 * t3) * e;
     const double rolled = code <= knee ? code : bent;
     const double factor = most > 0 ? pq_light(rolled) / most : 0;
-    shown[0] = factor * (0.627404 * in[0] + 0.329283 * in[1] + 0.043313 * in[2]);
-    shown[1] = factor * (0.069097 * in[0] + 0.919540 * in[1] + 0.011362 * in[2]);
-    shown[2] = factor * (0.016391 * in[0] + 0.088013 * in[1] + 0.895595 * in[2]);
+    for (int c = 0; c < 3; c++) {
+        shown[c] *= factor;
+    }
 }
 
 /* ITU-R BT.2100, table 5, for a display of 1000 cd/m^2. */

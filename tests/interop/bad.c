@@ -125,7 +125,7 @@ static void bad_options(void) {
         {offsetof(BhrTargetOptions, kind), 2, BAD, "kind"},
         {offsetof(BhrTargetOptions, kind), UINT32_MAX, BAD, "kind"},
         {offsetof(BhrTargetOptions, format), 0, BAD, "format"},
-        {offsetof(BhrTargetOptions, format), 6, BAD, "format"},
+        {offsetof(BhrTargetOptions, format), 8, BAD, "format"},
         {offsetof(BhrTargetOptions, width), 0, BAD, "width"},
         {offsetof(BhrTargetOptions, height), (1u << 20) + 1, BAD, "height"},
         {offsetof(BhrTargetOptions, width), 1u << 20, BHR_ERROR_UNSUPPORTED, "images here have"},

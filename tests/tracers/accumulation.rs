@@ -124,8 +124,9 @@ fn mistakes_change_nothing() {
         for weight in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e7] {
             assert_eq!(kind(renderer.accumulate(weight, &mut |_| true)), ErrorKind::InvalidArgument, "{weight}");
         }
-        // Frames of several samples ask several times whether they are to go on.
-        renderer.scene.quality.samples_per_pixel = 4;
+        // Frames of many samples ask several times whether they are to go on, on fast devices as well, which take some
+        // twenty samples at a time.
+        renderer.scene.quality.samples_per_pixel = 64;
         let mut calls = 0;
         let cancelled = renderer.accumulate(1.0, &mut |_| {
             calls += 1;

@@ -84,9 +84,9 @@ class Camera(CameraMethods):
     #: For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0.
     eye_distance: float = 0.0
     #: One of Eye. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
-    #: stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and a
-    #: beam, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the GPU
-    #: are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md.
+    #: stereo (omnidirectional stereo, ODS), and takes longer. Bloom of a preset is then left out; other bloom, and all
+    #: else of a film that regions cannot have, are INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT,
+    #: occluders and targets on the GPU are UNSUPPORTED. Other projections ignore it. Default MIDDLE. docs/cameras.md.
     eye: Named[Eye, EyeName] = named(Eye.MIDDLE)
     #: One of Chart: that of position, forward, up and velocity, of the time of bhr_set_time, and of the rays, paths and
     #: points that this context is asked for. RAIN is needed at and inside a spinning hole's horizon; a fall that is to
@@ -274,13 +274,13 @@ class Film(Struct):
     #: Stops, -20 .. 20. Default 0.
     exposure_ev: float = 0.0
     #: Glare, 0 .. 1, 0 off, default 0.25: optics scatter 0.4 bloom of each pixel's light over its surroundings, alike
-    #: at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8-bit images
-    #: of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was made, or
-    #: after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
+    #: at every resolution. No light is lost, and transparent images keep their alpha. With a region set, 8- and 10-bit
+    #: images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context was
+    #: made, or after the last bhr_set_preset, they are rendered without glare. docs/colour-and-film.md.
     bloom: float = 0.25
     #: The full width at half maximum of a Gaussian that the picture is spread by, as by a telescope's beam; in frame
-    #: heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8-bit images of light are INVALID_STATE
-    #: when they are rendered, also when a preset set the beam. docs/colour-and-film.md.
+    #: heights, 0 .. 1, 0 off (default). Alpha is left alone. With a region set, 8- and 10-bit images of light are
+    #: INVALID_STATE when they are rendered, also when a preset set the beam. docs/colour-and-film.md.
     beam_fwhm: float = 0.0
     #: One of ColourMap. Default NONE.
     colour_map: Named[ColourMap, ColourMapName] = named(ColourMap.NONE)
@@ -314,7 +314,7 @@ class Film(Struct):
     #: Auto exposure, 0 .. 1: how far the exposure goes to where auto_percentile is auto_target. Default 0: off. The
     #: frame's luminance is measured after exposure_ev and bloom, in small cells; cells darker than 2^-16 do not count.
     #: exposure_ev is taken back by it: auto_target is what makes the picture brighter. bhr_frame_stats has what was
-    #: added. With a region set, 8-bit images of light are INVALID_STATE when they are rendered.
+    #: added. With a region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
     auto_exposure: float = 0.0
     #: The percentile of the frame's luminance that auto exposure goes by, 0 .. 100. Default 90.
     auto_percentile: float = 90.0
@@ -330,12 +330,12 @@ class Film(Struct):
     #: time constant T it is 1 - exp(-t / T).
     auto_adaptation: float = 1.0
     #: Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, bright parts of the picture come;
-    #: their structure stays. Default 0: off. With a region set, 8-bit images of light are INVALID_STATE when they are
-    #: rendered.
+    #: their structure stays. Default 0: off. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+    #: they are rendered.
     highlights: float = 0.0
     #: Local tone mapping, 0 .. 1: how much nearer to middle grey, by the logarithm, dark parts of the picture come.
     #: Default 0: off. Black stays black, but glare over it is lifted like other light: use less bloom with it. With a
-    #: region set, 8-bit images of light are INVALID_STATE when they are rendered.
+    #: region set, 8- and 10-bit images of light are INVALID_STATE when they are rendered.
     shadows: float = 0.0
     #: Grain, 0 .. 1: light varies at random from place to place, with a standard deviation of 0.25 grain of itself.
     #: Default 0: off. The mean light stays. Its cells are a 1080th of the frame's height wide, but no smaller than a
@@ -345,23 +345,23 @@ class Film(Struct):
     grain_seed: float = 0.0
     #: 0 .. 1, the share of the colours that the LUT of bhr_set_film_lut has in the picture; 0 off. Default 1.
     lut_strength: float = 1.0
-    #: Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along the lines
-    #: that the edges of spike_blades make, reddish at their ends. No light is lost. With a region set, 8-bit images of
-    #: light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
+    #: Diffraction spikes, 0 .. 1, 0 off (default): the lens throws 0.4 spikes of each pixel's light along lines that
+    #: lie across the edges of the aperture's blades; they are reddish. No light is lost. With a region set, 8- and
+    #: 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
     spikes: float = 0.0
     #: The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0.
     spike_angle: float = 0.0
-    #: How far spikes reach, frame heights, 0.01 .. 2: beyond it they fall off by exp(-distance / spike_length). Default
-    #: 0.25.
+    #: The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 .. 2.
+    #: Default 0.25.
     spike_length: float = 0.25
     #: The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
-    #: to its left and right. No light is lost. With a region set, 8-bit images of light are INVALID_STATE when they are
-    #: rendered. docs/colour-and-film.md.
+    #: to its left and right. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+    #: they are rendered. docs/colour-and-film.md.
     streak: float = 0.0
-    #: How far the streak reaches, frame heights, 0.01 .. 4: further on it falls off by exp(-distance / its length).
+    #: The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
     #: Default 0.5.
     streak_length: float = 0.5
-    #: The streak's colour, -1 amber .. 1 blue. Default 0: that of the light.
+    #: The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
     streak_tint: float = 0.0
     #: BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203, as
     #: in ITU-R BT.2408.
@@ -401,7 +401,7 @@ class Quality(Struct):
 @dataclasses.dataclass(frozen=True)
 class Region(Struct):
     """The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined
-    have the same bytes as the frame, unless that has glare (BhrFilm.bloom)."""
+    have the same bytes as the frame, unless its film needs the light of the whole frame (see bhr_set_region)."""
 
     c_name: ClassVar[str] = "BhrRegion"
 

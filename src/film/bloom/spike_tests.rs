@@ -107,7 +107,7 @@ fn blades_make_spikes_where_their_angle_says() {
                 let turns = ((-right).atan2(up) - angle) / (2.0 * PI / f64::from(count));
                 let off_axis = (turns - turns.round()).abs() * 2.0 * PI / f64::from(count) * radius;
                 all += f64::from(v[1]);
-                on += if off_axis < 4.0 { f64::from(v[1]) } else { 0.0 };
+                on += if off_axis < 5.0 { f64::from(v[1]) } else { 0.0 };
             }
         }
         assert!(
@@ -118,13 +118,35 @@ fn blades_make_spikes_where_their_angle_says() {
     }
 }
 
+/// The variance across a line, which its angle and its place between cells must not change.
+#[test]
+fn spikes_are_equally_wide_at_every_angle() {
+    let frame = [401, 401];
+    let widths = [0.0, 0.02, 0.12, 0.3, 0.6, PI / 4.0].map(|angle| {
+        let optics = Optics { spike_blades: 4, spike_angle: angle, ..optics(1.0, 0.0) };
+        let out = spread(optics, frame, &point(frame, [200, 200]));
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for (i, v) in out.iter().enumerate() {
+            let (right, up) = ((i as u32 % frame[0]) as f64 - 200.0, 200.0 - (i as u32 / frame[0]) as f64);
+            let (along, across) = (up * angle.cos() - right * angle.sin(), right * angle.cos() + up * angle.sin());
+            if (50.0..110.0).contains(&along) && across.abs() < 12.0 {
+                sum += f64::from(v[1]);
+                squares += f64::from(v[1]) * across * across;
+            }
+        }
+        (squares / sum).sqrt()
+    });
+    let [narrowest, widest] = [f64::min, f64::max].map(|pick| widths.into_iter().reduce(pick).unwrap());
+    assert!(widest < 1.06 * narrowest && widest < 2.3, "deviations of {widths:?} pixels");
+}
+
 #[test]
 fn a_streak_is_level_and_has_its_tint() {
     let frame = [640, 120];
     for tint in [-1.0, 0.0, 0.5, 1.0] {
         let out = spread(Optics { streak_tint: tint, ..optics(0.0, 1.0) }, frame, &point(frame, [320, 60]));
         let far = |c: usize, y: u32| f64::from(out[(y * frame[0] + 450) as usize][c]);
-        let beside = (0..frame[1]).filter(|y| y.abs_diff(60) > 3).map(|y| far(1, y)).sum::<f64>();
+        let beside = (0..frame[1]).filter(|y| y.abs_diff(60) > 7).map(|y| far(1, y)).sum::<f64>();
         assert!(beside == 0.0 && far(1, 60) > 0.0, "tint {tint}: {beside} beside the streak");
         let wanted = |part: f64| 1.0 + f64::abs(tint) * (part - 1.0);
         let (blue, red) = (far(2, 60) / far(1, 60), far(0, 60) / far(1, 60));

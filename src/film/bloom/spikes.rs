@@ -11,9 +11,11 @@
 //!
 //! How: along a line light spreads by K(x) = sum over k of w_k exp(-|x| / l_k) / (2 l_k), l_k = l / 4^k, which two
 //! recursions for each k compute exactly, one in each direction. A line is a shear of the finest grid: its cells are
-//! summed along it, each shared between the two rows that it lies between, in elements of a few cells, and elements
-//! give light back to cells by the same shares. Light that K would carry out of the frame stays where it is. So the
+//! summed along it, each shared between the rows about it, in elements of a few cells, and elements give light back to cells by the same shares. Light that K would carry out of the frame stays where it is. So the
 //! whole is symmetric: no light is lost or made, and an even frame stays even.
+//!
+//! A cell gives its light to the three nearest rows by the quadratic B-spline of its distance from them, whose variance
+//! does not depend on where between rows it lies: spikes are equally wide at every angle.
 
 use super::{GRIDS, MOST_SCATTERED};
 use crate::allocate::filled;
@@ -186,7 +188,7 @@ impl SpikeLine {
             above,
         };
         let last = line.offset(along - 1).0;
-        (line.first_row, line.rows) = (-1 - last.max(0), across + 1 + last.unsigned_abs());
+        (line.first_row, line.rows) = (-1 - last.max(0), across + 2 + last.unsigned_abs());
         // Threads that read go along the grid's rows.
         if steep {
             line.next_along = line.stored_rows();
@@ -206,13 +208,17 @@ impl SpikeLine {
 
     /// Rows across that are kept of every element.
     fn stored_rows(&self) -> u32 {
-        self.across + 2 * self.step
+        self.across + 2 * self.step + 2
     }
 
-    /// The rows that a cell along the axis lies beyond the first one's: whole rows, and the part of one.
-    fn offset(&self, cell: u32) -> (i32, f32) {
+    /// The rows that a cell along the axis lies beyond the first one's: the nearest whole number, and the shares of the
+    /// row before that, it, and the next.
+    fn offset(&self, cell: u32) -> (i32, [f32; 3]) {
         let parts = self.slope * cell as i32;
-        (parts >> 16, (parts & 0xffff) as f32 / PARTS)
+        let nearest = (parts + (1 << 15)) >> 16;
+        let beyond = (parts - (nearest << 16)) as f32 / PARTS;
+        let (before, after) = (0.5 - beyond, 0.5 + beyond);
+        (nearest, [0.5 * before * before, 0.75 - beyond * beyond, 0.5 * after * after])
     }
 
     /// The number of the cell `j` along and `i` across.
@@ -231,8 +237,8 @@ impl SpikeLine {
     fn element_light(&self, own: &[[f32; 4]], element: u32, row: i32) -> [f32; 4] {
         let mut sum = [0.0; 4];
         for j in (element * self.step)..((element + 1) * self.step).min(self.along) {
-            let (rows, part) = self.offset(j);
-            for (i, share) in [(row + rows, 1.0 - part), (row + rows + 1, part)] {
+            let (rows, shares) = self.offset(j);
+            for (i, share) in (row + rows - 1..).zip(shares) {
                 let Some(i) = u32::try_from(i).ok().filter(|i| *i < self.across) else { continue };
                 let covered = share * self.coverage(j, i);
                 let light = own[self.cell(j, i)];
@@ -285,11 +291,12 @@ impl SpikeLine {
         spread.par_chunks_mut(width as usize).enumerate().for_each(|(y, cells)| {
             for (cell, x) in cells.iter_mut().zip(0_u32..) {
                 let [j, i] = if self.steep == 1 { [y as u32, x] } else { [x, y as u32] };
-                let (rows, part) = self.offset(j);
+                let (rows, shares) = self.offset(j);
                 let row = i as i32 - rows;
-                let [upper, lower] = [row, row - 1].map(|row| light(j / self.step, row));
+                let from = [row + 1, row, row - 1].map(|row| light(j / self.step, row));
                 for c in 0..3 {
-                    cell[c] = self.above * cell[c] + (1.0 - part) * upper[c] + part * lower[c];
+                    let sum = shares.iter().zip(from).map(|(share, light)| share * light[c]).sum::<f32>();
+                    cell[c] = self.above * cell[c] + sum;
                 }
             }
         });
