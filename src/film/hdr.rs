@@ -4,13 +4,13 @@
 //! `shaders/film/hdr.wgsl`, which has the same functions, agrees to one step of 10 bits.
 //!
 //! A display shows light of 1 at `paper_white` cd/m^2 (203 as ITU-R BT.2408 has it), and none brighter than `peak`. The
-//! brightest channel, in Rec. 2020, is rolled off to that as the EETF of ITU-R BT.2390, 5.4.1, has it for a source of 10,000 cd/m^2:
-//! in PQ codes E, with e that of the peak, light stays as it is up to the knee k = 1.5 e - 0.5, and above it, with
-//! t = (E - k) / (1 - k), becomes (2 t^3 - 3 t^2 + 1) k + (t^3 - 2 t^2 + t) (1 - k) + (3 t^2 - 2 t^3) e. The other
-//! channels keep their ratio to it, so that hues stay; but saturated blue, which HLG cannot show as bright as white, is cut
-//! at its code 1. HLG's codes are relative: the peak has the code 1, and the scene
-//! light E' of display light D, both parts of the peak, is D Y^((1 - gamma) / gamma), Y the luminance of D (BT.2100,
-//! table 5: the inverse of HLG's OOTF, whose black is 0), gamma = 1.2 * 1.111^log2(peak / 1000) (BT.2390, 6.2).
+//! brightest channel, in Rec. 2020, is rolled off to that as the EETF of ITU-R BT.2390, 5.4.1, has it for a source of
+//! 10,000 cd/m^2: in PQ codes E, with e that of the peak, light stays as it is up to the knee k = 1.5 e - 0.5, and
+//! above it, with t = (E - k) / (1 - k), becomes (2 t^3 - 3 t^2 + 1) k + (t^3 - 2 t^2 + t) (1 - k) + (3 t^2 - 2 t^3) e.
+//! The other channels keep their ratio to it, so that hues stay; but saturated blue, which HLG cannot show as bright as
+//! white, is cut at its code 1. HLG's codes are relative: the peak has the code 1, and the scene light E' of display
+//! light D, both parts of the peak, is D Y^((1 - gamma) / gamma), Y the luminance of D (BT.2100, table 5: the inverse
+//! of HLG's OOTF, whose black is 0), gamma = 1.2 * 1.111^log2(peak / 1000) (BT.2390, 6.2).
 
 use super::tone_map::MAX_SCENE_LIGHT;
 use crate::image::primaries::Primaries;

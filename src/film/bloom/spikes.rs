@@ -11,11 +11,13 @@
 //!
 //! How: along a line light spreads by K(x) = sum over k of w_k exp(-|x| / l_k) / (2 l_k), l_k = l / 4^k, which two
 //! recursions for each k compute exactly, one in each direction. A line is a shear of the finest grid: its cells are
-//! summed along it, each shared between the rows about it, in elements of a few cells, and elements give light back to cells by the same shares. Light that K would carry out of the frame stays where it is. So the
-//! whole is symmetric: no light is lost or made, and an even frame stays even.
+//! summed along it, each shared between the rows about it, in elements of a few cells, and elements give light back to
+//! cells by the same shares. Light that K would carry out of the frame stays where it is. So the whole is symmetric: no
+//! light is lost or made, and an even frame stays even.
 //!
 //! A cell gives its light to the three nearest rows by the quadratic B-spline of its distance from them, whose variance
-//! does not depend on where between rows it lies: spikes are equally wide at every angle.
+//! does not depend on where between rows it lies, so that spikes do not ripple. Across it a spike's deviation, with
+//! that of the finest grid, is sqrt(1.5 + 2 cos^2 a) pixels at 2 pixels a cell, a its angle to the nearest axis.
 
 use super::{GRIDS, MOST_SCATTERED};
 use crate::allocate::filled;
