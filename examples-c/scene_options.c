@@ -6,6 +6,8 @@
 #include "matter.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const Choice EFFECTS[] = {{"doppler", BHR_EFFECT_DOPPLER_SHIFT}, {"gravity", BHR_EFFECT_GRAVITY_SHIFT},
@@ -120,7 +122,11 @@ static const struct {
 };
 
 void options_add(Options *options, const Option *list, size_t count) {
-    for (size_t i = 0; i < count && options->count < MOST_OPTIONS; i++) {
+    for (size_t i = 0; i < count; i++) {
+        if (options->count == MOST_OPTIONS) { /* a mistake in this program, not in its command line */
+            fprintf(stderr, "there are more than %u options: MOST_OPTIONS is too small\n", MOST_OPTIONS);
+            exit(2);
+        }
         options->list[options->count++] = list[i];
     }
 }
