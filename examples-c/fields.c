@@ -274,17 +274,17 @@ const Field FILM_FIELDS[] = {
      "across the edges of the aperture's blades; they are reddish", NULL},
     {"--spike-angle", OPTION_DEGREES, offsetof(BhrFilm, spike_angle), "rad", 0, 0, NULL,
      "the direction of one spike", NULL},
-    {"--spike-length", OPTION_DOUBLE, offsetof(BhrFilm, spike_length), NULL, 0.01, 2, "0.01 .. 2",
-     "the length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 "
-     ".. 2", NULL},
+    {"--spike-length", OPTION_DOUBLE, offsetof(BhrFilm, spike_length), "frame height", 0.01, 2, "0.01 .. 2",
+     "in frame heights, 0.01 .. 2: the length of the spikes' faint tails, which fall off by exp(-distance / "
+     "spike_length)", NULL},
     {"--streak", OPTION_DOUBLE, offsetof(BhrFilm, streak), NULL, 0, 1, "0 .. 1",
      "the horizontal streak of an anamorphic lens, 0 .. 1, 0 off: 0.4 streak of each pixel's light is thrown to its "
      "left and right", NULL},
-    {"--streak-length", OPTION_DOUBLE, offsetof(BhrFilm, streak_length), NULL, 0.01, 4, "0.01 .. 4",
-     "the length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4",
-     NULL},
-    {"--streak-tint", OPTION_DOUBLE, offsetof(BhrFilm, streak_tint), NULL, 0, 0, NULL,
-     "the streak's colour: -1 amber, 0 that of the light, 1 blue", NULL},
+    {"--streak-length", OPTION_DOUBLE, offsetof(BhrFilm, streak_length), "frame height", 0.01, 4, "0.01 .. 4",
+     "in frame heights, 0.01 .. 4: the length of the streak's tails, which fall off by exp(-distance / "
+     "streak_length)", NULL},
+    {"--streak-tint", OPTION_DOUBLE, offsetof(BhrFilm, streak_tint), NULL, -1, 1, "-1 .. 1",
+     "the streak's colour, -1 .. 1: -1 is amber, 0 that of the light, 1 blue", NULL},
     {"--paper-white", OPTION_DOUBLE, offsetof(BhrFilm, paper_white), NULL, 10, 1000, "10 .. 1000",
      "BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000", NULL},
     {"--peak", OPTION_DOUBLE, offsetof(BhrFilm, peak), NULL, 100, 10000, "100 .. 10000",

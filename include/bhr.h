@@ -1091,17 +1091,18 @@ typedef struct BhrFilm {
     double spikes;
     /** The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi. Default 0. @since 0.2.0 */
     double spike_angle;
-    /** The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights,
-     * 0.01 .. 2. Default 0.25. @since 0.2.0 */
+    /** In frame heights, 0.01 .. 2: the length of the spikes' faint tails, which fall off by exp(-distance /
+     * spike_length). Default 0.25. @since 0.2.0 */
     double spike_length;
     /** The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light
      * is thrown to its left and right. No light is lost. With a region set, 8- and 10-bit images of light are
      * INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0 */
     double streak;
-    /** The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
+    /** In frame heights, 0.01 .. 4: the length of the streak's tails, which fall off by exp(-distance / streak_length).
      * Default 0.5. @since 0.2.0 */
     double streak_length;
-    double streak_tint; /**< The streak's colour: -1 amber, 0 (default) that of the light, 1 blue. @since 0.2.0 */
+    /** The streak's colour, -1 .. 1: -1 is amber, 0 that of the light, 1 blue. Default 0. @since 0.2.0 */
+    double streak_tint;
     /** BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000. Default 203,
      * as in ITU-R BT.2408. @since 0.2.0 */
     double paper_white;

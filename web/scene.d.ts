@@ -670,9 +670,9 @@ export interface Film {
      */
     spike_angle: number;
     /**
-     * The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 .. 2.
-     * Default 0.25.
-     * @range 0.01 .. 2
+     * In frame heights, 0.01 .. 2: the length of the spikes' faint tails, which fall off by exp(-distance /
+     * spike_length). Default 0.25.
+     * @range 0.01 .. 2 frame height
      * @default 0.25
      */
     spike_length: number;
@@ -685,14 +685,15 @@ export interface Film {
      */
     streak: number;
     /**
-     * The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
+     * In frame heights, 0.01 .. 4: the length of the streak's tails, which fall off by exp(-distance / streak_length).
      * Default 0.5.
-     * @range 0.01 .. 4
+     * @range 0.01 .. 4 frame height
      * @default 0.5
      */
     streak_length: number;
     /**
-     * The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
+     * The streak's colour, -1 .. 1: -1 is amber, 0 that of the light, 1 blue. Default 0.
+     * @range -1 .. 1
      * @default 0
      */
     streak_tint: number;

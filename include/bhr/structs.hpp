@@ -274,15 +274,15 @@ struct Film {
     double spikes;
     /// The direction of one spike, radians anticlockwise from upright, -2 pi .. 2 pi.
     double spike_angle;
-    /// The length of the spikes' faint tails, which fall off by exp(-distance / spike_length); frame heights, 0.01 ..
-    /// 2.
+    /// In frame heights, 0.01 .. 2: the length of the spikes' faint tails, which fall off by exp(-distance /
+    /// spike_length).
     double spike_length;
     /// The horizontal streak of an anamorphic lens, 0 .. 1, 0 off (default): 0.4 streak of each pixel's light is thrown
     /// to its left and right.
     double streak;
-    /// The length of the streak's tails, which fall off by exp(-distance / streak_length); frame heights, 0.01 .. 4.
+    /// In frame heights, 0.01 .. 4: the length of the streak's tails, which fall off by exp(-distance / streak_length).
     double streak_length;
-    /// The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
+    /// The streak's colour, -1 .. 1: -1 is amber, 0 that of the light, 1 blue.
     double streak_tint;
     /// BHR_FORMAT_RGB10A2_*: what the display shows for light of 1, diffuse white; cd/m^2, 10 .. 1000.
     double paper_white;
