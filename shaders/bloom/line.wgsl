@@ -38,7 +38,7 @@ fn row_shares(j: u32) -> vec3<f32> {
 }
 
 // The number of rows that are kept of every element.
-fn rows_kept() -> i32 {
+fn stored_rows() -> i32 {
     return i32(line.across + 2u * line.step + 2u);
 }
 

@@ -53,7 +53,7 @@ fn element_light(element: u32, row: i32) -> vec4<f32> {
 // Keeps what an element has after the line: what reached it, and of its own light what would leave the frame.
 fn keep(element: u32, row: i32, light: vec4<f32>, spread: vec3<f32>, kept: vec3<f32>) {
     let across = row_kept(element, row);
-    if element < line.elements && across >= 0 && across < rows_kept() {
+    if element < line.elements && across >= 0 && across < stored_rows() {
         let staying = select(vec3<f32>(0.0), (line.share - kept) * light.xyz / light.w, light.w > 0.0);
         sheared[element * line.next_along + u32(across) * line.next_across] = vec4<f32>(spread + staying, 0.0);
     }

@@ -32,8 +32,6 @@ const SHORTER: f64 = 4.0;
 pub const SPIKE_ELEMENTS: u32 = 1024;
 /// The share of all light that `spikes` = 1 takes, and `streak` = 1: that of `bloom`.
 const MOST_THROWN: f64 = MOST_SCATTERED;
-/// The power of 1 / l_k in the part of a spike's light that each exponential has.
-const NEARNESS: f64 = 1.0;
 /// Wavelengths of the primaries of Rec. 709 over that of green: 611, 549 and 464 nm.
 const STRETCH: [f64; 3] = [611.0 / 549.0, 1.0, 464.0 / 549.0];
 /// The shares that red, green and blue keep of a streak whose tint is 1.
@@ -138,7 +136,7 @@ impl Spikes {
 /// The part of a spike's light that each exponential has, by colour: in green 1 / l_k of the sum, so that the kernel
 /// falls as 1/x^2. A kernel that is stretched by s has s times as much light far out; the shortest has the rest.
 fn spike_colours() -> [[f64; 3]; SPIKE_TERMS] {
-    let near = |k: usize| SHORTER.powf(k as f64 * NEARNESS);
+    let near = |k: usize| SHORTER.powi(k as i32);
     let sum = (0..SPIKE_TERMS).map(near).sum::<f64>();
     let mut colours = [[0.0; 3]; SPIKE_TERMS];
     for (k, colour) in colours.iter_mut().enumerate().take(SPIKE_TERMS - 1) {
@@ -189,7 +187,7 @@ impl SpikeLine {
             share: share as f32,
             above,
         };
-        let last = line.offset(along - 1).0;
+        let last = line.whole_rows(along - 1);
         (line.first_row, line.rows) = (-1 - last.max(0), across + 2 + last.unsigned_abs());
         // Threads that read go along the grid's rows.
         if steep {
@@ -213,14 +211,16 @@ impl SpikeLine {
         self.across + 2 * self.step + 2
     }
 
-    /// The rows that a cell along the axis lies beyond the first one's: the nearest whole number, and the shares of the
-    /// row before that, it, and the next.
-    fn offset(&self, cell: u32) -> (i32, [f32; 3]) {
-        let parts = self.slope * cell as i32;
-        let nearest = (parts + (1 << 15)) >> 16;
-        let beyond = (parts - (nearest << 16)) as f32 / PARTS;
+    /// The rows that cell `j` along the axis lies beyond the first one's: the nearest whole number.
+    fn whole_rows(&self, j: u32) -> i32 {
+        (self.slope * j as i32 + (1 << 15)) >> 16
+    }
+
+    /// The shares that the row before that, it, and the next have of cell `j`.
+    fn row_shares(&self, j: u32) -> [f32; 3] {
+        let beyond = (self.slope * j as i32 - (self.whole_rows(j) << 16)) as f32 / PARTS;
         let (before, after) = (0.5 - beyond, 0.5 + beyond);
-        (nearest, [0.5 * before * before, 0.75 - beyond * beyond, 0.5 * after * after])
+        [0.5 * before * before, 0.75 - beyond * beyond, 0.5 * after * after]
     }
 
     /// The number of the cell `j` along and `i` across.
@@ -239,8 +239,7 @@ impl SpikeLine {
     fn element_light(&self, own: &[[f32; 4]], element: u32, row: i32) -> [f32; 4] {
         let mut sum = [0.0; 4];
         for j in (element * self.step)..((element + 1) * self.step).min(self.along) {
-            let (rows, shares) = self.offset(j);
-            for (i, share) in (row + rows - 1..).zip(shares) {
+            for (i, share) in (row + self.whole_rows(j) - 1..).zip(self.row_shares(j)) {
                 let Some(i) = u32::try_from(i).ok().filter(|i| *i < self.across) else { continue };
                 let covered = share * self.coverage(j, i);
                 let light = own[self.cell(j, i)];
@@ -293,8 +292,7 @@ impl SpikeLine {
         spread.par_chunks_mut(width as usize).enumerate().for_each(|(y, cells)| {
             for (cell, x) in cells.iter_mut().zip(0_u32..) {
                 let [j, i] = if self.steep == 1 { [y as u32, x] } else { [x, y as u32] };
-                let (rows, shares) = self.offset(j);
-                let row = i as i32 - rows;
+                let (row, shares) = (i as i32 - self.whole_rows(j), self.row_shares(j));
                 let from = [row + 1, row, row - 1].map(|row| light(j / self.step, row));
                 for c in 0..3 {
                     let sum = shares.iter().zip(from).map(|(share, light)| share * light[c]).sum::<f32>();

@@ -86,7 +86,7 @@ const LIST: Why = Plumbing("it keeps a list of pixels, which the CPU tracer does
 pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/base", "between gather", BLOOM),
     ("bloom/beam", "light_at both_sides spread_beam", BLOOM),
-    ("bloom/line", "whole_rows row_shares rows_kept row_kept", BLOOM),
+    ("bloom/line", "whole_rows row_shares stored_rows row_kept", BLOOM),
     ("bloom/spikes", "covered cell_light element_light keep spread_line", BLOOM),
     ("bloom/spiked", "kept_light add_line", BLOOM),
     ("bloom/gather", "kernel coverage tap_weight between gathered_within gather", BLOOM),
