@@ -122,7 +122,8 @@ viewer_takes_keys() {
 
 viewer_keys_window() { xdotool search --all --onlyvisible --pid "$viewer_pid" --name '^bhr: keys$'; }
 viewer_hides_keys() { ! viewer_keys_window; }
-viewer_keys_lie_at() { xdotool getwindowgeometry "$(viewer_keys_window)" | grep -q -e "Position: $1 "; }
+# grep reads to the end: with -q it may close the pipe before xdotool has written its second line, which then fails.
+viewer_keys_lie_at() { xdotool getwindowgeometry "$(viewer_keys_window)" | grep -e "Position: $1 " >/dev/null; }
 
 # H shows the keys over the window, goes along with it, and takes them away; the window stays the one that hears keys.
 viewer_shows_keys() {
@@ -131,7 +132,7 @@ viewer_shows_keys() {
     # Letters, a twentieth to a third of it, on a dark ground: white, and a rim that is darker than the ground.
     convert "$scratch/keys.png" -colorspace Gray -threshold 50% -format '%[fx:mean]' info: |
         awk '{ print "share of ink: " $0; exit !($0 > 0.03 && $0 < 0.33) }' || return 1
-    viewer_keys_lie_at 12,12 && xdotool windowmove "$viewer_window" 80 60 &&
+    viewer_until 60 viewer_keys_lie_at 12,12 && xdotool windowmove "$viewer_window" 80 60 &&
         viewer_until 60 viewer_keys_lie_at 92,72 && xdotool key m && viewer_until 60 viewer_says '^mass 1.1' &&
         xdotool key h && viewer_until 60 viewer_hides_keys && viewer_close
 }
