@@ -86,7 +86,7 @@ impl Joined {
                         *number -= f64::from(place);
                     }
                 }
-                Whole::Channels(Channels { width: size[0], height: size[1], list, attributes })
+                Whole::Channels(Channels { width: size[0], height: size[1], list, attributes, space: first.space })
             }
         };
         Ok(Self { size, whole, there: zeros(count)? })
@@ -126,6 +126,9 @@ impl Joined {
                 let same = all.list.iter().map(|(name, _)| name).eq(tile.list.iter().map(|(name, _)| name));
                 if !same {
                     return wrong("it has other layers than the tiles before it");
+                }
+                if all.space != tile.space {
+                    return wrong("its light has other primaries than that of the tiles before it");
                 }
                 let shared = |of_all: &(String, Attribute)| {
                     PLACE.contains(&of_all.0.as_str()) || tile.attributes.contains(of_all)

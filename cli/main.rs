@@ -78,10 +78,12 @@ fn command() -> Command {
                 .value_parser(value_parser!(u32).range(2..=4096)),
         )
         .arg(flag("float", "Pixels of 32 bits in .exr files, instead of 16"))
+        .arg(option("colour-space", "NAME", "Primaries of .exr files: rec709 (default), p3, rec2020 or acescg"))
+        .arg(option("hdr", "CURVE", "High dynamic range, pq or hlg: .png files of 16 bits, or videos but for h264"))
         .arg(flag("transparent", "Without the sky; alpha says where it was"))
         .arg(option("outputs", "LIST", "Layers of .exr files beside the light: depth,sky,position,position1 .."))
         .arg(option("stereo", "PLACES", "Both eyes of a panorama: top-bottom or side-by-side"))
-        .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265, av1, prores (.mov) or prores4444"))
+        .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265 (with --hdr), av1, prores (.mov) or prores4444"))
         .arg(
             option(
                 "quality",

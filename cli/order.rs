@@ -8,7 +8,7 @@ use crate::manifest::{Fingerprint, Tile, hash};
 use crate::open::{self, Opened, recovering};
 use crate::signals::Signals;
 use crate::video::codec::Codec;
-use bhr::image::{ImageMut, ImageRef, Layout, PixelFormat};
+use bhr::image::{ColourSpace, ImageMut, ImageRef, Layout, PixelFormat};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
 use bhr::scene::{Eye, MOST_CROSSINGS, MOST_OUTPUTS, Made, Output, Projection, RayOutput, RayOutputKind, Region, View};
@@ -54,6 +54,8 @@ pub struct Order {
     /// The video that frames go into; `None`: each has a file of its own.
     pub codec: Option<Codec>,
     format: PixelFormat,
+    /// The primaries of the light of `.exr` files.
+    pub space: ColourSpace,
     pub transparent: bool,
     pub stereo: Option<Stereo>,
     /// Beside the light.
@@ -73,10 +75,18 @@ fn kind_of(given: &ArgMatches) -> Result<(Option<Codec>, PixelFormat), Ending> {
     let out = given.get_one::<PathBuf>("out").ok_or_else(|| Ending::usage("no --out"))?;
     let extension = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let codec = given.get_one::<String>("codec").map(String::as_str);
-    let codec = Codec::of(extension.as_deref(), codec, given.get_one::<u32>("quality").copied())?;
+    let hdr = hdr_of(given)?;
+    let coded = hdr.unwrap_or(PixelFormat::Rgba8Srgb);
+    let codec = Codec::of(extension.as_deref(), codec, given.get_one::<u32>("quality").copied(), coded)?;
     let format = match (extension.as_deref(), given.get_flag("float")) {
-        (_, false) if codec.is_some() => PixelFormat::Rgba8Srgb,
-        (Some("png"), false) => PixelFormat::Rgba8Srgb,
+        (_, false) if codec.is_some() => coded,
+        (Some("png"), false) => coded,
+        (_, _) if hdr.is_some() => {
+            return Err(Ending::usage(
+                "--hdr: pictures of high dynamic range are .png files or videos; .exr files hold \
+                                      all of the light anyway",
+            ));
+        }
         (Some("exr"), false) => PixelFormat::Rgba16F,
         (Some("exr"), true) => PixelFormat::Rgba32F,
         (_, float) => {
@@ -85,6 +95,34 @@ fn kind_of(given: &ArgMatches) -> Result<(Option<Codec>, PixelFormat), Ending> {
         }
     };
     Ok((codec, format))
+}
+
+/// The format of high dynamic range that is asked for.
+fn hdr_of(given: &ArgMatches) -> Result<Option<PixelFormat>, Ending> {
+    match given.get_one::<String>("hdr").map(String::as_str) {
+        None => Ok(None),
+        Some("pq") => Ok(Some(PixelFormat::Rgb10A2Pq)),
+        Some("hlg") => Ok(Some(PixelFormat::Rgb10A2Hlg)),
+        Some(other) => Err(Ending::usage(format!("--hdr {other}: it must be pq or hlg"))),
+    }
+}
+
+/// The primaries that are asked for. Errors: pixels of the format have none but their own.
+fn space_of(given: &ArgMatches, format: PixelFormat) -> Result<ColourSpace, Ending> {
+    let name = given.get_one::<String>("colour-space").map(String::as_str);
+    let space = match name {
+        None | Some("rec709") => ColourSpace::Rec709,
+        Some("p3") => ColourSpace::P3D65,
+        Some("rec2020") => ColourSpace::Rec2020,
+        Some("acescg") => ColourSpace::AcesCg,
+        Some(other) => {
+            return Err(Ending::usage(format!("--colour-space {other}: it must be rec709, p3, rec2020 or acescg")));
+        }
+    };
+    if name.is_some() && format.is_developed() {
+        return Err(Ending::usage("--colour-space: it is for .exr files"));
+    }
+    Ok(space)
 }
 
 /// Outputs as they are named on the command line: `depth,position,position1`.
@@ -170,9 +208,14 @@ impl Order {
             }
         }
         let (codec, format) = kind_of(given)?;
+        let space = space_of(given, format)?;
         let (stereo, outputs) = (stereo_of(given)?, text("outputs").map_or(Ok(Vec::new()), outputs_of)?);
         if !outputs.is_empty() && (format.is_developed() || stereo.is_some()) {
             return Err(Ending::usage("--outputs: only .exr files of one eye have layers"));
+        }
+        let hdr = format.is_developed() && format != PixelFormat::Rgba8Srgb;
+        if tile.is_some() && hdr && codec.is_none() {
+            return Err(Ending::usage("--tile: tiles of high dynamic range cannot be joined; only a video takes both"));
         }
         if tile.is_some() && stereo.is_some() && codec.is_none() {
             return Err(Ending::usage(
@@ -185,6 +228,9 @@ impl Order {
             return Err(Ending::usage("--shutter: motion blur is for whole frames of one eye without --outputs"));
         }
         let transparent = given.get_flag("transparent");
+        if transparent && hdr {
+            return Err(Ending::usage("--transparent: pictures of high dynamic range have no alpha"));
+        }
         let hash_of =
             |path: &Path| std::fs::read(path).map(|bytes| hash(&bytes)).map_err(|error| Ending::io(path, error));
         let map = opened.file.map().map(hash_of).transpose()?;
@@ -193,6 +239,9 @@ impl Order {
         let mut all = format!("{scene}\n{map:?} {size:?} {samples:?} {format:?} {transparent}");
         if stereo.is_some() || !outputs.is_empty() {
             all += &format!(" {stereo:?} {outputs:?}");
+        }
+        if space != ColourSpace::Rec709 {
+            all += &format!(" {space:?}");
         }
         if let Some(shutter) = shutter {
             all += &format!(" {shutter:?} {:x}", render.frames_per_second.to_bits());
@@ -211,6 +260,7 @@ impl Order {
             shutter,
             codec,
             format,
+            space,
             transparent,
             stereo,
             outputs,
@@ -357,8 +407,22 @@ impl Order {
             // Attributes are those of both eyes.
             renderer.scene.camera.eye = of_scene;
         }
+        self.convert(pixels, &places)?;
         let whole = Region { full_width: width, full_height: height, x: 0, y: 0 };
         Ok(renderer.scene.made(&region.unwrap_or(whole)))
+    }
+
+    /// Brings the light of a frame into its colour space.
+    fn convert(&self, pixels: &mut [u32], places: &[Place]) -> Result<(), Ending> {
+        if self.space == ColourSpace::Rec709 {
+            return Ok(());
+        }
+        for place in places.iter().filter(|place| place.output == Output::Light) {
+            let words = pixels.get_mut(place.words.clone()).unwrap_or_default();
+            let mut image = ImageMut::new(place.layout, bytemuck::cast_slice_mut(words))?;
+            ColourSpace::Rec709.convert(&mut image, self.space)?;
+        }
+        Ok(())
     }
 
     /// Renders the moments of a frame and develops their mean.

@@ -88,6 +88,7 @@ struct Picture {
     /// The light and what is beside it.
     places: Vec<Place>,
     transparent: bool,
+    space: ColourSpace,
     attributes: Vec<(String, Attribute)>,
     effort: Effort,
     made: Made,
@@ -246,6 +247,7 @@ impl Pictures<'_> {
         let picture = Picture {
             places,
             transparent: self.order.transparent,
+            space: self.order.space,
             effort: self.effort,
             attributes: if developed { Vec::new() } else { self.attributes(&made) },
             manifest: self.names.manifest(),
@@ -283,7 +285,8 @@ impl Picture {
             }
             _ => {
                 let layers = images.into_iter().map(|(channels, image)| Layer { channels, image });
-                save_layers(&layers.collect::<Vec<_>>(), &self.attributes, self.effort, &made.file)?;
+                let about = (&self.attributes[..], self.space);
+                save_layers(&layers.collect::<Vec<_>>(), about, self.effort, &made.file)?;
             }
         }
         made.note(&self.manifest)?;

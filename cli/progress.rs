@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// Any thread may report what is done.
 pub struct Progress(Mutex<Shown>);
@@ -22,23 +23,37 @@ enum Shown {
 }
 
 /// Frames that are done, those that were there already among them.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct Count {
     done: u64,
+    /// Frames that this run has made.
+    made: u64,
     total: u64,
+    begin: Instant,
 }
 
 impl Count {
+    fn add(&mut self, done: &Done) {
+        self.done += 1;
+        self.made += u64::from(done.seconds.is_some());
+    }
+
     fn percent(self) -> f64 {
         100.0 * self.done as f64 / self.total.max(1) as f64
+    }
+
+    /// Frames a second of this run, and the seconds that are left if all are made so; `None`: it has made none yet.
+    fn pace(self) -> Option<[f64; 2]> {
+        let rate = self.made as f64 / self.begin.elapsed().as_secs_f64().max(1e-9);
+        (self.made > 0).then(|| [rate, self.total.saturating_sub(self.done) as f64 / rate])
     }
 }
 
 impl Progress {
     pub fn new(kind: &str, total: u64) -> Result<Self, Ending> {
-        let count = Count { done: 0, total };
+        let count = Count { done: 0, made: 0, total, begin: Instant::now() };
         let bar = || {
-            let style = "{bar:40} {pos}/{len} frames, {elapsed} gone, {eta} to go  {msg}";
+            let style = "{bar:40} {pos}/{len} frames, {per_sec}, {elapsed} gone, {eta} to go  {msg}";
             let bar = ProgressBar::new(total);
             bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar
@@ -103,17 +118,20 @@ impl Shown {
                 bar.inc(1);
             }
             Self::Plain(count) => {
-                count.done += 1;
-                say(&format!("frame {frame}, {} of {}: {file} ({took})", count.done, count.total));
+                count.add(done);
+                let pace = count.pace().map(|[rate, left]| format!("; {rate:.2} frames a second, {left:.0} s to go"));
+                let pace = pace.unwrap_or_default();
+                say(&format!("frame {frame}, {} of {}: {file} ({took}){pace}", count.done, count.total));
             }
             Self::Json(count) => {
-                count.done += 1;
+                count.add(done);
+                let [rate, left] = count.pace().map_or([None; 2], |pace| pace.map(Some));
                 let line = json!({"frame": frame, "file": file.to_string(), "seconds": seconds, "done": count.done,
-                                  "total": count.total});
+                                  "total": count.total, "frames_per_second": rate, "seconds_left": left});
                 say(&line.to_string());
             }
             Self::OpenJd(count) => {
-                count.done += 1;
+                count.add(done);
                 say(&format!("openjd_progress: {:.2}", count.percent()));
                 say(&format!("openjd_status: frame {frame}: {file} ({took})"));
             }

@@ -2,6 +2,7 @@
 //! The codecs of videos, and how ffmpeg is told of them. Knows no process.
 
 use crate::ending::Ending;
+use bhr::image::PixelFormat;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -18,12 +19,22 @@ pub struct Codec {
     kind: Kind,
     /// Smaller is better; 0 for codecs without such a scale.
     quality: u32,
+    /// The pixels that it is given.
+    format: PixelFormat,
 }
 
 impl Codec {
-    /// The codec of a file's ending and of options; `None`: files of this ending are no videos. Errors: a codec that
-    /// such files do not hold, a quality beyond its codec's, or one for pictures.
-    pub fn of(extension: Option<&str>, name: Option<&str>, quality: Option<u32>) -> Result<Option<Self>, Ending> {
+    /// The codec of a file's ending and of options, for pixels of a format; `None`: files of this ending are no videos.
+    /// Errors: a codec that such files, or pixels, do not have, a quality beyond its codec's, or one for pictures.
+    pub fn of(
+        extension: Option<&str>,
+        name: Option<&str>,
+        quality: Option<u32>,
+        format: PixelFormat,
+    ) -> Result<Option<Self>, Ending> {
+        // H.264 has 10 bits in profiles that hardly any player has.
+        let is_hdr = matches!(format, PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg);
+        let name = if is_hdr && extension == Some("mp4") { name.or(Some("h265")) } else { name };
         let kind = match (extension, name) {
             (Some("mp4" | "mov"), Some("h264")) | (Some("mp4"), None) => Kind::H264,
             (Some("mp4" | "mov"), Some("h265")) => Kind::H265,
@@ -62,7 +73,10 @@ impl Codec {
             }
             Some(quality) => quality,
         };
-        Ok(Some(Self { kind, quality }))
+        if is_hdr && kind == Kind::H264 {
+            return Err(Ending::usage("--hdr: videos of high dynamic range are of h265, av1, prores or prores4444"));
+        }
+        Ok(Some(Self { kind, quality, format }))
     }
 
     /// Errors: sides that the codec's chroma cannot have, or transparency that it cannot hold.
@@ -120,16 +134,34 @@ impl Codec {
         }
     }
 
+    /// The form of the pixels that it is given, by ffmpeg's names.
+    pub fn input(&self) -> &'static str {
+        if self.is_hdr() { "x2bgr10le" } else { "rgba" }
+    }
+
+    fn is_hdr(&self) -> bool {
+        matches!(self.format, PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg)
+    }
+
     /// The curve of its pixels, by ffmpeg's names. ProRes has no name for that of sRGB; players show both alike.
     pub fn curve(&self) -> &'static str {
-        match self.kind {
-            Kind::H264 | Kind::H265 | Kind::Av1 => "iec61966-2-1",
-            Kind::ProRes | Kind::ProRes4444 => "bt709",
+        match (self.format, self.kind) {
+            (PixelFormat::Rgb10A2Pq, _) => "smpte2084",
+            (PixelFormat::Rgb10A2Hlg, _) => "arib-std-b67",
+            (_, Kind::H264 | Kind::H265 | Kind::Av1) => "iec61966-2-1",
+            (_, Kind::ProRes | Kind::ProRes4444) => "bt709",
         }
+    }
+
+    /// The primaries of its pixels, and the matrix to luma and chroma, by ffmpeg's names; and the matrix as its filter
+    /// scale names it.
+    pub fn primaries(&self) -> [&'static str; 3] {
+        if self.is_hdr() { ["bt2020", "bt2020nc", "bt2020"] } else { ["bt709", "bt709", "bt709"] }
     }
 
     /// How the codec is made, in words that differ where its bytes do.
     pub fn name(&self) -> String {
-        format!("{:?} {}", self.kind, self.quality)
+        let Self { kind, quality, format } = self;
+        if self.is_hdr() { format!("{kind:?} {quality} {format:?}") } else { format!("{kind:?} {quality}") }
     }
 }

@@ -66,14 +66,17 @@ impl Shape {
     fn arguments(&self) -> Vec<OsString> {
         let Self { size: [width, height], rate, codec, transparent, .. } = self;
         let [over, under] = ratio(*rate);
-        let mut list = arguments(["-f", "rawvideo", "-pixel_format", "rgba", "-video_size"]);
+        let mut list = arguments(["-f", "rawvideo", "-pixel_format", codec.input(), "-video_size"]);
         list.extend(arguments([format!("{width}x{height}"), "-framerate".into(), format!("{over}/{under}")]));
-        // Pixels are those of sRGB, whose primaries are Rec. 709's. By exact arithmetic they are converted alike on all
-        // processors. Each encoder takes what the colours are from another of two places.
+        // Pixels are those of sRGB, whose primaries are Rec. 709's, or of high dynamic range, with those of Rec. 2020.
+        // By exact arithmetic they are converted alike on all processors. Each encoder takes what the colours are from
+        // another of two places.
         let (pixels, curve) = (codec.pixels(*transparent), codec.curve());
+        let [primaries, matrix, of_scale] = codec.primaries();
         let convert = format!(
-            "scale=in_range=pc:out_range=tv:out_color_matrix=bt709:flags=bicubic+accurate_rnd+full_chroma_int+\
-             bitexact,format={pixels},setparams=range=tv:colorspace=bt709:color_primaries=bt709:color_trc={curve}"
+            "scale=in_range=pc:out_range=tv:out_color_matrix={of_scale}:flags=bicubic+accurate_rnd+full_chroma_int+\
+             bitexact,format={pixels},setparams=range=tv:colorspace={matrix}:color_primaries={primaries}:\
+             color_trc={curve}"
         );
         list.extend(arguments(["-i", "pipe:0", "-vf", &convert]));
         list.extend(arguments(codec.arguments(*transparent)));
@@ -82,9 +85,9 @@ impl Shape {
             "-g",
             &keys,
             "-colorspace",
-            "bt709",
+            matrix,
             "-color_primaries",
-            "bt709",
+            primaries,
             "-color_range",
             "tv",
         ]));

@@ -23,7 +23,7 @@ fn rates_are_ratios() {
 
 #[test]
 fn pieces_cover_a_video_and_none_is_short() {
-    let codec = Codec::of(Some("mp4"), None, None).unwrap().unwrap();
+    let codec = Codec::of(Some("mp4"), None, None, bhr::image::PixelFormat::Rgba8Srgb).unwrap().unwrap();
     for (frames, rate) in [(1, 24.0), (47, 24.0), (48, 24.0), (95, 24.0), (96, 24.0), (1000, 29.97), (40, 1.0)] {
         let shape =
             Shape { size: [2, 2], rate, frames, codec, transparent: false, keyframes: None, description: Vec::new() };

@@ -28,6 +28,13 @@ impl ColourSpace {
         }
     }
 
+    /// The space of these primaries; `None`: they are of no space that has a name here.
+    #[cfg(feature = "exr")]
+    pub(crate) fn of(primaries: Primaries) -> Option<Self> {
+        let all = [Self::Rec709, Self::P3D65, Self::Rec2020, Self::AcesCg];
+        all.into_iter().find(|space| space.primaries().is_near(primaries))
+    }
+
     /// Rows of the matrix from light in this space to light in another; white stays white, by Bradford's adaptation.
     pub fn to(self, other: Self) -> [[f64; 3]; 3] {
         let (there, here) = (other.primaries().rows_from_rec709(), self.primaries().rows_to_rec709());

@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DVec3};
 
-/// Chromaticities that differ from those of Rec. 709 by less in each number are taken for them: files round them.
+/// Chromaticities that differ by less in each number are taken for the same: files round them.
 const SAME_PRIMARIES: f64 = 0.002;
 /// Numbers of a matrix at most. Real primaries have fewer; those of CIE XYZ have 3.3.
 const MAX_FACTOR: f64 = 64.0;
@@ -25,6 +25,12 @@ impl Primaries {
     /// ACES's AP1 (S-2014-004).
     pub const AP1: Self = Self([[0.713, 0.293], [0.165, 0.83], [0.128, 0.044], [0.32168, 0.33767]]);
 
+    /// Whether these are the same, as files round them.
+    pub fn is_near(self, other: Self) -> bool {
+        let pairs = self.0.as_flattened().iter().zip(other.0.as_flattened());
+        pairs.into_iter().all(|(a, b)| (a - b).abs() < SAME_PRIMARIES)
+    }
+
     /// Rows of the matrix from light of these primaries to light of Rec. 709.
     pub fn rows_to_rec709(self) -> [[f64; 3]; 3] {
         self.to_rec709().ok().flatten().unwrap_or(DMat3::IDENTITY).transpose().to_cols_array_2d()
@@ -39,8 +45,7 @@ impl Primaries {
     /// Light of these primaries to light of Rec. 709; white stays white. `None`: they are the same. Errors: `()` for
     /// places that no three lights and their white have.
     pub fn to_rec709(self) -> std::result::Result<Option<DMat3>, ()> {
-        let pairs = self.0.as_flattened().iter().zip(Self::REC709.0.as_flattened());
-        if pairs.into_iter().all(|(a, b)| (a - b).abs() < SAME_PRIMARIES) {
+        if self.is_near(Self::REC709) {
             return Ok(None);
         }
         let to_xyz = self.to_xyz().ok_or(())?;

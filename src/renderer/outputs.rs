@@ -5,7 +5,7 @@
 use super::Renderer;
 use super::made::Place;
 use crate::error::{Error, PARTLY_WRITTEN, Result};
-use crate::image::{Attribute, Effort, Layer, PixelFormat, save_layers};
+use crate::image::{Attribute, ColourSpace, Effort, Layer, PixelFormat, save_layers};
 use crate::job::{Job, JobTarget, OutputFrame, OutputTarget};
 use crate::scene::{MOST_OUTPUTS, Made, Output, Region, Scene};
 use crate::tracer::{AdapterInfo, Progress};
@@ -91,7 +91,7 @@ impl Renderer {
             }
             Ok(Layer { channels: output.channels(), image: target.as_image_ref() })
         });
-        save_layers(&layers.collect::<Result<Vec<_>>>()?, &attributes, Effort::default(), path)
+        save_layers(&layers.collect::<Result<Vec<_>>>()?, (&attributes, ColourSpace::Rec709), Effort::default(), path)
     }
 
     /// Renders the outputs of one frame; `region` as in [`Self::render`].

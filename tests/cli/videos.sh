@@ -202,6 +202,41 @@ codecs() {
         [ "$(frames_in "$scratch/codecs/small.mp4")" -eq 48 ]
 }
 
+# A video of high dynamic range says so, and shows the pictures, but for what the codec loses.
+hdr_videos() {
+    local case curve found codec
+    for case in pq:smpte2084:h265.mp4 hlg:arib-std-b67:prores.mov; do
+        curve=${case#*:} codec=${case##*:}
+        video --out "$scratch/hdr/${case%%:*}.${codec#*.}" --codec "${codec%.*}" --hdr "${case%%:*}" --frames 0-16 \
+            --size 64x64 >/dev/null || return 1
+        found=$(ffprobe -v error -select_streams v:0 -of csv=p=0 -show_entries \
+            stream=color_transfer,color_primaries,color_space,color_range "$scratch/hdr/${case%%:*}.${codec#*.}")
+        echo "$found"
+        [[ $found == tv,bt2020nc,${curve%%:*},bt2020 ]] || return 1
+    done
+    timeout 300 "$bhr" render "$scratch/video.toml" --backend cpu --out "$scratch/hdr.png" --frames 5 --size 64x64 \
+        --hdr pq --progress none &&
+        ffmpeg -v error -y -i "$scratch/hdr/pq.mp4" -vf 'select=eq(n\,5),scale=in_color_matrix=bt2020,format=rgb48be' \
+            -vframes 1 "$scratch/hdr.frame.png" || return 1
+    found=$(compare -metric PSNR "$scratch/hdr.png" "$scratch/hdr.frame.png" null: 2>&1)
+    echo "PSNR $found"
+    python3 -c 'import sys; sys.exit(not float(sys.argv[1]) > 38)' "${found%% *}" || return 1
+    # The picture names its curve: cICP with Rec. 2020, PQ, RGB, the full range.
+    python3 - "$scratch/hdr.png" <<'END' || return 1
+import sys
+
+picture = open(sys.argv[1], "rb").read()
+place = picture.index(b"cICP")
+assert picture[place + 4:place + 8] == bytes([9, 16, 0, 1]), picture[place:place + 8]
+assert picture[24] == 16, "it has no 16 bits"
+END
+    status 64 video --out "$scratch/hdr/bad.mp4" --hdr pq --codec h264 || return 1
+    status 64 video --out "$scratch/hdr/bad.mp4" --hdr 2020 || return 1
+    status 64 render --out "$scratch/hdr/bad.exr" --frames 0 --hdr pq || return 1
+    status 64 render --out "$scratch/hdr/bad.png" --frames 0 --hdr pq --transparent || return 1
+    status 64 render --out "$scratch/hdr/bad.png" --frames 0 --hdr pq --tile 0,0,4,4
+}
+
 mistakes_of_videos() {
     local out=$scratch/mistakes/v.mp4
     status 64 video --out "$out" --codec prores || return 1

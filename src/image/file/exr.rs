@@ -107,9 +107,13 @@ pub(super) fn header_error(error: ::exr::error::Error) -> Error {
 /// From the file's primaries, where it names others than those of Rec. 709. Numbers that are no primaries' are passed
 /// over: programs write zeros.
 fn to_rec709(header: &Header) -> Option<Matrix> {
+    primaries(header)?.to_rec709().ok().flatten().map(Matrix::new)
+}
+
+/// The primaries that a file names.
+pub(super) fn primaries(header: &Header) -> Option<Primaries> {
     let Chromaticities { red, green, blue, white } = header.shared_attributes.chromaticities?;
-    let primaries = Primaries([red, green, blue, white].map(|Vec2(x, y)| [f64::from(x), f64::from(y)]));
-    primaries.to_rec709().ok().flatten().map(Matrix::new)
+    Some(Primaries([red, green, blue, white].map(|Vec2(x, y)| [f64::from(x), f64::from(y)])))
 }
 
 /// A file whose headers come first. Reading them fails past `MAX_HEADER_BYTES`, and where there is no memory for

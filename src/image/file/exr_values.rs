@@ -6,6 +6,7 @@ use super::exr::{BLOCKS_AT_A_TIME, HeaderLimiter, block_bytes, check, header_err
 use super::layer::{Attribute, Channels, Values};
 use super::support::{io_error, pixel_count, probe, zeros};
 use crate::error::{Error, Result};
+use crate::image::ColourSpace;
 use crate::image::memory::PixelFormat;
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::block::reader::ChunksReader;
@@ -83,7 +84,8 @@ fn claimed(header: &Header) -> Result<Channels> {
     });
     let mut attributes = attributes.collect::<Vec<_>>();
     attributes.sort_by(|(a, _), (b, _)| a.cmp(b));
-    Ok(Channels { width: width as u32, height: height as u32, list, attributes })
+    let space = super::exr::primaries(header).and_then(ColourSpace::of).unwrap_or_default();
+    Ok(Channels { width: width as u32, height: height as u32, list, attributes, space })
 }
 
 /// Takes a block of scan lines, whose values are in this machine's byte order. Errors: IO for one that is not

@@ -2,6 +2,7 @@
 //! The things that are written: a layer of a file, the attributes that go with layers, and the meaning of alpha. Knows
 //! no kind of file.
 
+use crate::image::ColourSpace;
 use crate::image::memory::ImageRef;
 use half::f16;
 
@@ -33,6 +34,8 @@ pub struct Channels {
     pub height: u32,
     pub list: Vec<(String, Values)>,
     pub attributes: Vec<(String, Attribute)>,
+    /// The primaries of light, as the file says; Rec. 709 where it names none, or others than this library's.
+    pub space: ColourSpace,
 }
 
 /// The work that is done to make a file of layers small: a level of zlib, 1 .. 9.

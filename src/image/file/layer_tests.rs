@@ -203,9 +203,9 @@ fn all_channels_of_a_file_come_back() {
         Layer { channels: vec!["depth.Z".into()], image: ImageRef::new(depth, bytemuck::cast_slice(&floats)).unwrap() },
     ];
     let attributes = vec![("a".into(), Attribute::Number(0.1)), ("b".into(), Attribute::Text("KERR".into()))];
-    save_layers(&layers, &attributes, Effort::default(), &path).unwrap();
+    save_layers(&layers, (&attributes, ColourSpace::AcesCg), Effort::default(), &path).unwrap();
     let mut all = load_channels(&path).unwrap();
-    assert_eq!((all.width, all.height, &all.attributes), (70, 40, &attributes));
+    assert_eq!((all.width, all.height, &all.attributes, all.space), (70, 40, &attributes, ColourSpace::AcesCg));
     let names = all.list.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
     assert_eq!(names, ["A", "B", "G", "R", "depth.Z"]);
     let green = halves.iter().skip(1).step_by(4).copied().collect();

@@ -68,7 +68,7 @@ impl Source<'_> {
 /// OUT_OF_MEMORY.
 pub(super) fn write(
     layers: &[Layer<'_>],
-    attributes: &[(String, Attribute)],
+    about: (&[(String, Attribute)], ColourSpace),
     effort: Effort,
     file: impl Write + Seek,
 ) -> Result<()> {
@@ -80,7 +80,7 @@ pub(super) fn write(
     }
     let Some(Layer { image, .. }) = layers.first() else { return Ok(()) };
     let size = Vec2(image.width() as usize, image.height() as usize);
-    write_channels(size, channels, (attributes, ColourSpace::Rec709), effort, file)
+    write_channels(size, channels, about, effort, file)
 }
 
 /// Writes an image as R, G, B, and A where it has alpha; a single value becomes grey. Errors: IO; OUT_OF_MEMORY.
@@ -108,7 +108,7 @@ pub(super) fn write_values(channels: &Channels, effort: Effort, file: impl Write
         }
     }
     let list = channels.list.iter().map(|(name, values)| Channel { name, values: Source::Values(values, size.0) });
-    write_channels(size, list.collect(), (&channels.attributes, ColourSpace::Rec709), effort, file)
+    write_channels(size, list.collect(), (&channels.attributes, channels.space), effort, file)
 }
 
 /// Writes channels of images of one size. Errors: as [`write`].

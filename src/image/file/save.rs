@@ -68,12 +68,12 @@ pub fn save_text(text: &str, path: &Path) -> Result<()> {
     on_own_thread(write).map_err(|error| about("write", path, &error))
 }
 
-/// Writes float images of one size to one `.exr` file, each channel by its name, with attributes. It appears as in
-/// [`save`]. Errors: UNSUPPORTED for another extension or an 8-bit format, and for EXR without the cargo feature;
-/// INVALID_ARGUMENT for two channels of one name; IO; OUT_OF_MEMORY.
+/// Writes float images of one size to one `.exr` file, each channel by its name, with attributes and the primaries of
+/// their light. It appears as in [`save`]. Errors: UNSUPPORTED for another extension or an 8-bit format, and for EXR
+/// without the cargo feature; INVALID_ARGUMENT for two channels of one name; IO; OUT_OF_MEMORY.
 pub fn save_layers(
     layers: &[Layer<'_>],
-    attributes: &[(String, Attribute)],
+    (attributes, space): (&[(String, Attribute)], ColourSpace),
     effort: Effort,
     path: &Path,
 ) -> Result<()> {
@@ -86,7 +86,7 @@ pub fn save_layers(
     let write = || {
         replace::with(path, |file| {
             let mut file = BufWriter::new(file);
-            encode_layers(layers, attributes, effort, &mut file)?;
+            encode_layers(layers, (attributes, space), effort, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
         })
     };
@@ -111,17 +111,17 @@ pub fn save_channels(channels: &super::layer::Channels, effort: Effort, path: &P
 #[cfg(feature = "exr")]
 fn encode_layers(
     layers: &[Layer<'_>],
-    attributes: &[(String, Attribute)],
+    (attributes, space): (&[(String, Attribute)], ColourSpace),
     effort: Effort,
     file: &mut BufWriter<std::fs::File>,
 ) -> Result<()> {
-    super::layers::write(layers, attributes, effort, file)
+    super::layers::write(layers, (attributes, space), effort, file)
 }
 
 #[cfg(not(feature = "exr"))]
 fn encode_layers(
     _: &[Layer<'_>],
-    _: &[(String, Attribute)],
+    _: (&[(String, Attribute)], ColourSpace),
     _: Effort,
     _: &mut BufWriter<std::fs::File>,
 ) -> Result<()> {

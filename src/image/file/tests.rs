@@ -137,11 +137,11 @@ fn layers_keep_every_channel_and_attribute() {
     let attributes =
         [("bhr.hole.spin".into(), Attribute::Number(0.1)), ("bhr.adapter".into(), Attribute::Text("a\u{e9}b".into()))];
     let path = folder.file("layers.exr");
-    save_layers(&layers(), &attributes, Effort::default(), &path).unwrap();
+    save_layers(&layers(), (&attributes, ColourSpace::Rec709), Effort::default(), &path).unwrap();
     // Files of one picture are equal: a hash map would have another order each time.
     let first = fs::read(&path).unwrap();
     for _ in 0..4 {
-        save_layers(&layers(), &attributes, Effort::default(), &path).unwrap();
+        save_layers(&layers(), (&attributes, ColourSpace::Rec709), Effort::default(), &path).unwrap();
         assert!(fs::read(&path).unwrap() == first);
     }
     let read = read_all_flat_layers_from_file(&path).unwrap();
@@ -166,12 +166,18 @@ fn layers_keep_every_channel_and_attribute() {
     assert_eq!(other.get(&Text::from("bhr.adapter")), Some(&AttributeValue::Text("a??b".into())));
     // Two channels of one name, and formats that are none of layers.
     let twice = layers().into_iter().chain(layers()).collect::<Vec<_>>();
-    assert_eq!(save_layers(&twice, &[], Effort::default(), &path).unwrap_err().kind, ErrorKind::InvalidArgument);
+    assert_eq!(
+        save_layers(&twice, (&[], ColourSpace::Rec709), Effort::default(), &path).unwrap_err().kind,
+        ErrorKind::InvalidArgument
+    );
     let bytes = layout(PixelFormat::Rgba8Srgb, 0);
     let words = block(bytes, [&TOP, &BOTTOM]);
     let image = ImageRef::new(bytes, bytemuck::cast_slice(&words)).unwrap();
     let colours = Layer { channels: names[2].iter().map(|name| name.to_string()).collect(), image };
-    assert_eq!(save_layers(&[colours], &[], Effort::default(), &path).unwrap_err().kind, ErrorKind::Unsupported);
+    assert_eq!(
+        save_layers(&[colours], (&[], ColourSpace::Rec709), Effort::default(), &path).unwrap_err().kind,
+        ErrorKind::Unsupported
+    );
     assert_eq!(folder.names(), ["layers.exr"]);
 }
 
