@@ -290,6 +290,12 @@ const Field FILM_FIELDS[] = {
     {"--peak", OPTION_DOUBLE, offsetof(BhrFilm, peak), NULL, 100, 10000, "100 .. 10000",
      "BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is "
      "rolled off", NULL},
+    {"--flare", OPTION_DOUBLE, offsetof(BhrFilm, flare), NULL, 0, 1, "0 .. 1",
+     "lens flare, 0 .. 1, 0 off: the lens reflects 0.15 flare of each pixel's light into ghosts, blurred images of "
+     "its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the middle "
+     "of the frame", NULL},
+    {"--flare-ghosts", OPTION_UINT, offsetof(BhrFilm, flare_ghosts), NULL, 0, 8, "0 .. 8",
+     "how many ghosts each light has, 0 .. 8; 0, the default, stands for 5", NULL},
     {NULL, OPTION_FLAG, 0, NULL, 0, 0, NULL, NULL, NULL}};
 
 const Field QUALITY_FIELDS[] = {

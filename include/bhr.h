@@ -1004,9 +1004,9 @@ typedef int32_t BhrColourMap;
 #define BHR_COLOUR_MAP_AFMHOT 1
 
 /** How light becomes pixels, in formats of 8 and 10 bits and windows of BHR_VIEW_LIGHT only: float formats hold
- * linear radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto
- * exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve
- * and the LUT, or the colour map, dithering. */
+ * linear radiance, and other views show values. In this order: exposure, bloom, beam, flare, spikes and streak,
+ * auto exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB
+ * curve and the LUT, or the colour map, dithering. */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
@@ -1109,6 +1109,13 @@ typedef struct BhrFilm {
     /** BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
      * rolled off. Default 1000. @since 0.2.0 */
     double peak;
+    /** Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
+     * images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
+     * middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE
+     * when they are rendered. docs/colour-and-film.md. @since 0.2.0 */
+    double flare;
+    uint32_t flare_ghosts; /**< How many ghosts each light has, 0 .. 8; 0, the default, stands for 5. @since 0.2.0 */
+    uint32_t reserved;     /**< Reserved: 0. @since 0.2.0 */
 } BhrFilm;
 
 /** Fills in the defaults. */
@@ -1338,7 +1345,7 @@ BHR_NODISCARD BhrStatus bhr_region_init(BhrRegion *region, size_t struct_size);
 /** Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not.
  * Rendering is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and
  * INVALID_STATE for 8- and 10-bit images of light with a film that needs the light of the whole frame: bloom
- * (see there), a beam, spikes, a streak, auto exposure, highlights or shadows. */
+ * (see there), a beam, spikes, a streak, a flare, auto exposure, highlights or shadows. */
 BHR_NODISCARD BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 
 /** Reads the region as it is set. *out_present becomes 1 with a region; without one it becomes 0, and region gets the
@@ -1417,9 +1424,9 @@ BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, 
  * untouched.
  * Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
  * region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times
- * as wide as high, or for bloom, a beam, spikes, a streak, auto_exposure, highlights or shadows with a region
- * set; UNSUPPORTED inside a spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the
- * progress callback. */
+ * as wide as high, or for bloom, a beam, spikes, a streak, a flare, auto_exposure, highlights or shadows with a
+ * region set; UNSUPPORTED inside a spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by
+ * the progress callback. */
 BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /** Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU

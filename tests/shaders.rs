@@ -145,6 +145,8 @@ const CELLS: Because = Because(
 );
 const BLOCK: Because = Because("it counts the cells of a block, of which the host allows 84 along a side");
 const ELEMENT: Because = Because("it counts the cells of an element, of which the host allows 4");
+const BLADES: Because = Because("it counts the blades of an aperture, of which the host allows 8");
+const SOURCE: Because = Because("it counts the cells of a grid along one side, of which the host allows 4000");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
@@ -152,8 +154,12 @@ const BITS: Because = Because("it goes over the bits of a word, which loses one 
 const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/beam", "spread_beam", "for (var quarter = 0; quarter < BEAM_QUARTERS; quarter += 1)", CONSTANT),
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
-    ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
-    ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
+    ("bloom/gather", "gather", "for (var y = first.y; y < taps.y; y += 1)", CONSTANT),
+    ("bloom/gather", "gather", "for (var x = first.x; x < taps.x; x += 1)", CONSTANT),
+    ("bloom/ghosts", "inside", "for (var blade = 1u; blade < flare.blades; blade += 1u)", BLADES),
+    ("bloom/ghosts", "ghost_light", "for (var y = cells.y; y < cells.w; y += 1)", SOURCE),
+    ("bloom/ghosts", "ghost_light", "for (var x = cells.x; x < cells.z; x += 1)", SOURCE),
+    ("bloom/ghosts", "draw_ghosts", "for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u)", CONSTANT),
     ("bloom/spikes", "element_light", "for (var j = first; j < end; j += 1u)", ELEMENT),
     ("bloom/spikes", "spread_line", "for (var term = 0u; term < SPIKE_TERMS; term += 1u)", CONSTANT),
     ("bloom/spikes", "spread_line", "for (var away = 1u; away < THREADS && power > LEAST_POWER; away *= 2u)", CONSTANT),

@@ -468,7 +468,7 @@ export interface Sky {
 
 /**
  * How light becomes pixels, in formats of 8 and 10 bits and windows of "light" only: float formats hold linear
- * radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto exposure,
+ * radiance, and other views show values. In this order: exposure, bloom, beam, flare, spikes and streak, auto exposure,
  * highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT,
  * or the colour map, dithering.
  */
@@ -711,6 +711,21 @@ export interface Film {
      * @default 1000
      */
     peak: number;
+    /**
+     * Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
+     * images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
+     * middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+     * they are rendered. docs/colour-and-film.md.
+     * @range 0 .. 1
+     * @default 0
+     */
+    flare: number;
+    /**
+     * How many ghosts each light has, 0 .. 8; 0, the default, stands for 5.
+     * @range 0 .. 8
+     * @default 0
+     */
+    flare_ghosts: number;
 }
 
 /** How exactly to trace. */

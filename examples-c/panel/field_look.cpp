@@ -47,6 +47,7 @@ const struct {
     {FILM_FIELDS, "--spike-length", "their length", 0.0, nullptr},
     {FILM_FIELDS, "--streak-length", "its length", 0.0, nullptr},
     {FILM_FIELDS, "--streak-tint", "its tint", 0.0, nullptr},
+    {FILM_FIELDS, "--flare-ghosts", "ghosts", 0.0, "5"},
     {QUALITY_FIELDS, "--samples-per-pixel", "samples", 0.0, nullptr},
     {QUALITY_FIELDS, "--max-disk-order", "disk images", 0.0, nullptr},
     {QUALITY_FIELDS, "--volume-resolution", "deep matter", 0.0, nullptr},

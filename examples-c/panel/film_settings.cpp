@@ -18,9 +18,10 @@ const Names CURVE = {"--tone-map"};
 const Names FILMIC = {"--toe-strength", "--toe-length", "--shoulder-strength", "--shoulder-length",
                       "--shoulder-angle"};
 const Names GRADE = {"--white-balance", "--tint", "--contrast", "--saturation"};
-const Names LENS = {"--bloom", "--beam-fwhm", "--vignette", "--spikes", "--streak"};
+const Names LENS = {"--bloom", "--beam-fwhm", "--vignette", "--spikes", "--streak", "--flare"};
 const Names SPIKES = {"--spike-blades", "--spike-angle", "--spike-length"};
 const Names STREAK = {"--streak-length", "--streak-tint"};
+const Names FLARE = {"--flare-ghosts"};
 const Names GRAIN = {"--grain", "--grain-seed"};
 const Names LUT = {"--lut-strength", "--colour-map"};
 const Names HDR = {"--paper-white", "--peak"};
@@ -32,7 +33,7 @@ bool holds(const Names &names, const Field &field) {
 
 bool has_group(const Field &field) {
     for (const Names *names :
-         {&EXPOSURE, &METER, &LOCAL, &CURVE, &FILMIC, &GRADE, &LENS, &SPIKES, &STREAK, &GRAIN, &LUT, &HDR}) {
+         {&EXPOSURE, &METER, &LOCAL, &CURVE, &FILMIC, &GRADE, &LENS, &SPIKES, &STREAK, &FLARE, &GRAIN, &LUT, &HDR}) {
         if (holds(*names, field)) {
             return true;
         }
@@ -108,6 +109,9 @@ void SettingsPanel::film(Scene &scene) {
         ImGui::EndDisabled();
         ImGui::BeginDisabled(scene.film().streak == 0.0);
         film_fields(scene, of(STREAK));
+        ImGui::EndDisabled();
+        ImGui::BeginDisabled(scene.film().flare == 0.0);
+        film_fields(scene, of(FLARE));
         ImGui::EndDisabled();
     }
     if (section("Grain", true)) {

@@ -289,6 +289,14 @@ struct Film {
     /// BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
     /// rolled off.
     double peak;
+    /// Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
+    /// images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
+    /// middle of the frame.
+    double flare;
+    /// How many ghosts each light has, 0 .. 8; 0, the default, stands for 5.
+    std::uint32_t flare_ghosts;
+    /// Reserved: 0.
+    std::uint32_t reserved;
 
     Film() noexcept { detail::defaults(*this, bhr_film_init); }
     BhrFilm c() const noexcept { return detail::as_c<BhrFilm>(*this); }

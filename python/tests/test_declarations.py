@@ -193,7 +193,7 @@ POSITIONS = {
         "toe_strength toe_length shoulder_strength shoulder_length shoulder_angle vignette "
         "auto_exposure auto_percentile auto_target auto_least_ev auto_most_ev auto_adaptation highlights shadows "
         "grain grain_seed lut_strength spikes spike_angle spike_length streak streak_length streak_tint "
-        "paper_white peak"
+        "paper_white peak flare flare_ghosts"
     ),
     bhr.HotSpot: (
         "radius size azimuth flags absorption temperature spectral_index tint brightness position velocity time"

@@ -76,13 +76,16 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     let last = vec2<i32>(level.fine) - 1;
     // No taps where samples do, which software drivers take as well.
     let within = GRID && all(cell > vec2<i32>(0)) && all(corner + 5 < last - 2);
-    let taps = select(most, 0, within);
+    // Only those in the frame, which in wide and low frames are few: lavapipe leaves the loops of a thread after 65535
+    // turns.
+    let first = max(-corner, vec2<i32>(0));
+    let taps = select(min(vec2<i32>(most), last + 1 - corner), vec2<i32>(0), within);
     var sum = vec3<f32>(0.0);
     var weights = 0.0;
-    for (var y = 0; y < taps; y += 1) {
+    for (var y = first.y; y < taps.y; y += 1) {
         let row = corner.y + y;
         let down = tap_weight(y, row, cell.y, level.cells.y, level.fine.y, level.tail_y);
-        for (var x = 0; x < taps; x += 1) {
+        for (var x = first.x; x < taps.x; x += 1) {
             let column = corner.x + x;
             let weight = down * tap_weight(x, column, cell.x, level.cells.x, level.fine.x, level.tail_x);
             let place = clamp(vec2<i32>(column, row), vec2<i32>(0), last) - level.origin;

@@ -4,6 +4,7 @@
 // Mirrors src/film/bloom/spikes.rs.
 
 #import bloom/line
+#import bloom/tail
 #import constants
 
 @group(0) @binding(0) var<uniform> line: SpikeLine;
@@ -18,12 +19,6 @@ const LEAST_POWER: f32 = 1e-9;
 // Sums of the elements up to a thread's last, and from its first on, each by how far away it is.
 var<workgroup> before: array<vec4<f32>, THREADS>;
 var<workgroup> behind: array<vec4<f32>, THREADS>;
-
-// The part of the cell that is `from_end` before the last one that lies in the frame.
-fn covered(from_end: i32, tail: vec4<f32>) -> f32 {
-    let last = select(select(tail.y, tail.z, from_end == 1), tail.w, from_end == 0);
-    return select(select(1.0, tail.x, from_end == 3), last, from_end < 3);
-}
 
 // The light of a cell, and how much of a cell it is; 0 beyond the grid.
 fn cell_light(j: u32, i: i32) -> vec4<f32> {

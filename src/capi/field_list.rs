@@ -227,6 +227,8 @@ unsafe impl Described for BhrFilm {
         Field { name: "streak_tint", offset: offset_of!(BhrFilm, streak_tint), kind: Kind::Numbers(1) },
         Field { name: "paper_white", offset: offset_of!(BhrFilm, paper_white), kind: Kind::Numbers(1) },
         Field { name: "peak", offset: offset_of!(BhrFilm, peak), kind: Kind::Numbers(1) },
+        Field { name: "flare", offset: offset_of!(BhrFilm, flare), kind: Kind::Numbers(1) },
+        Field { name: "flare_ghosts", offset: offset_of!(BhrFilm, flare_ghosts), kind: Kind::Count },
     ];
 }
 

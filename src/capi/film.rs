@@ -5,7 +5,7 @@ use super::call::on_context;
 use super::context::BhrContext;
 use super::entry::anywhere;
 use super::image::path_of;
-use super::pointer::{is_null, unknown};
+use super::pointer::{check_reserved, is_null, unknown};
 use super::state::State;
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
@@ -37,9 +37,9 @@ pub const BHR_COLOUR_MAP_NONE: BhrColourMap = 0;
 pub const BHR_COLOUR_MAP_AFMHOT: BhrColourMap = 1;
 
 /// How light becomes pixels, in formats of 8 and 10 bits and windows of BHR_VIEW_LIGHT only: float formats hold
-/// linear radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto
-/// exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve
-/// and the LUT, or the colour map, dithering.
+/// linear radiance, and other views show values. In this order: exposure, bloom, beam, flare, spikes and streak,
+/// auto exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB
+/// curve and the LUT, or the colour map, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -150,12 +150,21 @@ pub struct BhrFilm {
     /// BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
     /// rolled off. Default 1000. @since 0.2.0
     pub peak: f64,
+    /// Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
+    /// images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
+    /// middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE
+    /// when they are rendered. docs/colour-and-film.md. @since 0.2.0
+    pub flare: f64,
+    /// How many ghosts each light has, 0 .. 8; 0, the default, stands for 5. @since 0.2.0
+    pub flare_ghosts: u32,
+    /// Reserved: 0. @since 0.2.0
+    pub reserved: u32,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
-    const SIZES: &'static [usize] = &[24, 272];
+    const SIZES: &'static [usize] = &[24, 288];
     fn defaults() -> Self {
         Film::default().into()
     }
@@ -204,6 +213,9 @@ impl From<Film> for BhrFilm {
             streak_tint: film.optics.streak_tint,
             paper_white: film.paper_white,
             peak: film.peak,
+            flare: film.optics.flare,
+            flare_ghosts: film.optics.flare_ghosts,
+            reserved: 0,
         }
     }
 }
@@ -212,6 +224,7 @@ impl TryFrom<BhrFilm> for Film {
     type Error = Error;
 
     fn try_from(given: BhrFilm) -> Result<Self> {
+        check_reserved(given.reserved, "film")?;
         let tone_map = match given.tone_map {
             BHR_TONE_MAP_NONE => ToneMap::None,
             BHR_TONE_MAP_ACES => ToneMap::Aces,
@@ -260,6 +273,8 @@ impl TryFrom<BhrFilm> for Film {
             streak: given.streak,
             streak_length: given.streak_length,
             streak_tint: given.streak_tint,
+            flare: given.flare,
+            flare_ghosts: given.flare_ghosts,
         };
         let film = Self {
             tone_map,

@@ -65,7 +65,7 @@ pub unsafe extern "C" fn bhr_region_init(region: *mut BhrRegion, struct_size: us
 /// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not.
 /// Rendering is INVALID_ARGUMENT for an image that reaches out of the frame (x + width > full_width), and
 /// INVALID_STATE for 8- and 10-bit images of light with a film that needs the light of the whole frame: bloom
-/// (see there), a beam, spikes, a streak, auto exposure, highlights or shadows.
+/// (see there), a beam, spikes, a streak, a flare, auto exposure, highlights or shadows.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -36,9 +36,9 @@ pub unsafe extern "C" fn bhr_set_progress(
 /// untouched.
 /// Errors: INVALID_ARGUMENT also for a format that does not go with the view, or an image that reaches out of the
 /// region's frame; INVALID_STATE where the camera's motion is not possible, for a CUBE whose frame is not 6 times
-/// as wide as high, or for bloom, a beam, spikes, a streak, auto_exposure, highlights or shadows with a region
-/// set; UNSUPPORTED inside a spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by the
-/// progress callback.
+/// as wide as high, or for bloom, a beam, spikes, a streak, a flare, auto_exposure, highlights or shadows with a
+/// region set; UNSUPPORTED inside a spinning hole's horizon in chart STATIC, and at r- (1 + 1e-6); CANCELLED by
+/// the progress callback.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -4,7 +4,7 @@
 //! `src/gpu/frame/passes/bloom.rs` do the same with these numbers. Works on exposed light
 //! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
 //! 8-bit pixels. A telescope's beam (bloom/beam.rs) and a lens's spikes (bloom/spikes.rs) spread light by the same
-//! grids.
+//! grids, and so does what it reflects into ghosts (bloom/ghosts.rs).
 //!
 //! The result: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
 //! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
@@ -24,9 +24,11 @@
 //! nearer.
 
 mod beam;
+mod ghosts;
 mod spikes;
 
 pub use beam::{BEAM_SHARES, Beam};
+pub use ghosts::{GHOST_PAIRS, Ghost, GhostNumbers, Ghosts};
 pub use spikes::{SPIKE_ELEMENTS, SPIKE_TERMS, SpikeLine, Spikes};
 
 use crate::allocate::{collected, filled, with_room};
@@ -70,6 +72,8 @@ pub struct Bloom {
     pub levels: Vec<Level>,
     /// The beam, on one of the levels; `None`: the film has none.
     pub beam: Option<Beam>,
+    /// Light reflected into ghosts, added on the finest grid; `None`: the film has none.
+    pub ghosts: Option<Ghosts>,
     /// Light thrown along lines, on the finest grid; `None`: the film has none.
     pub spikes: Option<Spikes>,
 }
@@ -222,30 +226,39 @@ impl Bloom {
         }
         let direct = 1.0 - scattered * (1.0 - narrow);
         let beam = (beam_fwhm > 0.0).then(|| Beam::new(beam_fwhm * height, factor, levels.len()));
-        let mut bloom = Self { frame, factor, direct: direct as f32, levels, beam, spikes: None };
-        if bloom.beam.is_none() && scattered == 0.0 {
-            bloom.levels.truncate(1);
-        }
+        let mut bloom = Self { frame, factor, direct: direct as f32, levels, beam, ghosts: None, spikes: None };
         if bloom.beam.is_some() {
-            bloom = bloom.through_beam(direct, scattered > 0.0);
+            bloom = bloom.through_beam(direct);
         }
-        Ok(bloom.with_spikes(&film.optics))
+        // Coarser levels than these spread nothing.
+        let beam_levels = bloom.beam.as_ref().map_or(1, |beam| beam.level + 1);
+        let ghost_levels = if film.optics.flare > 0.0 {
+            Ghosts::source_of(bloom.levels.iter().map(|level| level.size[1])) + 1
+        } else {
+            1
+        };
+        if scattered == 0.0 {
+            bloom.levels.truncate(beam_levels.max(ghost_levels));
+        }
+        Ok(bloom.with_optics(&film.optics))
     }
 
-    /// With the light that a lens throws along lines, which the rest then lacks.
-    fn with_spikes(mut self, optics: &Optics) -> Self {
-        let rest = (1.0 - Spikes::share(optics)) as f32;
+    /// With the light that a lens reflects into ghosts and throws along lines, which the rest then lacks.
+    fn with_optics(mut self, optics: &Optics) -> Self {
+        let rest = (1.0 - Spikes::share(optics) - Ghosts::share(optics)) as f32;
         self.direct *= rest;
         self.levels.iter_mut().for_each(|level| level.weight *= rest);
         let above = self.weight_above(0);
-        let base = self.levels.first().map(|base| (base.size, base.tails()));
-        let spikes = base.and_then(|base| Spikes::new(optics, base, self.factor, self.frame[1], above));
-        Self { spikes, ..self }
+        let grids = self.levels.iter().map(|level| (level.size, level.tails())).collect::<Vec<_>>();
+        let ghosts = Ghosts::new(optics, &grids, self.factor, self.frame, above);
+        let above = if ghosts.is_some() { 1.0 } else { above };
+        let spikes = grids.first().and_then(|base| Spikes::new(optics, *base, self.factor, self.frame[1], above));
+        Self { ghosts, spikes, ..self }
     }
 
     /// The pyramid with its shares as the beam needs them: all light that is spread less than the beam's level spreads
-    /// it goes through that level. Coarser levels are dropped where nothing else needs them.
-    fn through_beam(mut self, direct: f64, scatters: bool) -> Self {
+    /// it goes through that level.
+    fn through_beam(mut self, direct: f64) -> Self {
         let Some(beam) = &self.beam else { return self };
         let through = (direct * beam.through) as f32;
         self.direct = (direct * (1.0 - beam.through)) as f32;
@@ -254,9 +267,6 @@ impl Bloom {
         if let Some(level) = self.levels.get_mut(beam.level) {
             level.weight += narrower + through;
         }
-        if !scatters {
-            self.levels.truncate(beam.level + 1);
-        }
         self
     }
 
@@ -264,8 +274,8 @@ impl Bloom {
     /// weighted already.
     pub fn weight_above(&self, index: usize) -> f32 {
         match self.levels.get(index) {
-            // The lines' light is added to what the finest grid spreads, weighted already.
-            Some(_) if index == 0 && self.spikes.is_some() => 1.0,
+            // Light of ghosts and lines is added to what the finest grid spreads, weighted already.
+            Some(_) if index == 0 && (self.ghosts.is_some() || self.spikes.is_some()) => 1.0,
             Some(last) if index + 1 == self.levels.len() => last.weight,
             _ => 1.0,
         }
@@ -374,7 +384,11 @@ impl<'a> BloomAccumulator<'a> {
     /// Once all tiles are in: spreads their light. On the current pool. Errors: OUT_OF_MEMORY.
     pub fn spread(self) -> Result<Glare<'a>> {
         let Self { bloom, base } = self;
-        let own = if bloom.spikes.is_some() { collected(base.iter().copied(), GRIDS)? } else { Vec::new() };
+        let own = if bloom.spikes.is_some() || bloom.ghosts.is_some() {
+            collected(base.iter().copied(), GRIDS)?
+        } else {
+            Vec::new()
+        };
         let mut grids = vec![base];
         for pair in bloom.levels.windows(2) {
             if let ([finer, level], Some(grid)) = (pair, grids.last()) {
@@ -382,9 +396,16 @@ impl<'a> BloomAccumulator<'a> {
                 grids.push(grid);
             }
         }
+        let drawn = match &bloom.ghosts {
+            Some(ghosts) => grids.get(ghosts.source).map(|source| ghosts.drawn(source)).transpose()?,
+            None => None,
+        };
         let mut glare = bloom.after_beam(grids.len().saturating_sub(1), grids.pop().unwrap_or_default())?;
         for (index, grid) in grids.into_iter().enumerate().rev() {
             glare = bloom.after_beam(index, bloom.with_coarser(index, grid, &glare))?;
+        }
+        if let (Some((ghosts, drawn)), Some(base)) = (bloom.ghosts.as_ref().zip(drawn), bloom.levels.first()) {
+            ghosts.add_to(&mut glare, &own, base.size[0], &drawn);
         }
         if let Some(spikes) = &bloom.spikes {
             spikes.add_to(&mut glare, &own)?;
@@ -490,3 +511,6 @@ mod tests;
 
 #[cfg(test)]
 mod spike_tests;
+
+#[cfg(test)]
+mod ghost_tests;

@@ -2,7 +2,7 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::resources::{bloom_textures, meter_buffers, occluder, sky_target, spike_buffers};
+use super::frame::resources::{bloom_textures, ghost_buffers, meter_buffers, occluder, sky_target, spike_buffers};
 use super::frame::uniforms::{bake, band, clouds, frame, matter, outputs, rays};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
@@ -23,6 +23,7 @@ fn shared() -> Vec<Layout> {
         unused_2 = hdr + 72, unused_3 = hdr + 76);
     let [scene, pass] = frame::layouts();
     let [given, start, end] = rays::layouts();
+    let [ghost, ghosts] = ghost_buffers::layouts();
     let [level, beam] = bloom_textures::layouts();
     let [meter, exposure] = meter_buffers::layouts();
     let [cloud, clouds] = clouds::layouts();
@@ -46,6 +47,8 @@ fn shared() -> Vec<Layout> {
         schwarzschild,
         level,
         beam,
+        ghost,
+        ghosts,
         spike_buffers::layout(),
         meter,
         exposure,

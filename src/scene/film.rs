@@ -12,6 +12,9 @@ const MOST_SEED: f64 = 1e15;
 /// The least `AutoExposure::adaptation`: that of frames a millisecond apart, with a time constant of 17 minutes.
 const SLOWEST_ADAPTATION: f64 = 1e-6;
 
+/// The most `Optics::flare_ghosts`: those that `crate::film::bloom::Ghosts` knows.
+pub const MOST_GHOSTS: u32 = 8;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ToneMap {
@@ -114,7 +117,7 @@ impl Default for AutoExposure {
     }
 }
 
-/// Light that a lens throws along lines: see `crate::film::bloom::Spikes`.
+/// Light that a lens throws along lines, and reflects into ghosts: see `crate::film::bloom::Spikes` and `Ghosts`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optics {
     /// Diffraction spikes, 0 off (default) .. 1.
@@ -131,6 +134,10 @@ pub struct Optics {
     pub streak_length: f64,
     /// The streak's colour: -1 amber, 0 (default) that of the light, 1 blue.
     pub streak_tint: f64,
+    /// Lens flare: the light that goes into ghosts, 0 off (default) .. 1.
+    pub flare: f64,
+    /// How many ghosts there are, 1 .. 8, or 0 (default): 5.
+    pub flare_ghosts: u32,
 }
 
 impl Default for Optics {
@@ -143,6 +150,8 @@ impl Default for Optics {
             streak: 0.0,
             streak_length: 0.5,
             streak_tint: 0.0,
+            flare: 0.0,
+            flare_ghosts: 0,
         }
     }
 }
@@ -153,9 +162,14 @@ impl Optics {
         if self.spike_blades == 0 { 6 } else { self.spike_blades }
     }
 
+    /// Ghosts of a flare.
+    pub fn ghosts(&self) -> u32 {
+        if self.flare_ghosts == 0 { 5 } else { self.flare_ghosts }
+    }
+
     /// Whether it changes anything.
     pub fn is_on(&self) -> bool {
-        self.spikes > 0.0 || self.streak > 0.0
+        self.spikes > 0.0 || self.streak > 0.0 || self.flare > 0.0
     }
 }
 
@@ -219,8 +233,8 @@ impl Film {
         self.auto_exposure.strength > 0.0 || self.highlights > 0.0 || self.shadows > 0.0
     }
 
-    /// The film without what the light of the whole frame goes into: glare, beam, spikes, auto exposure, local tone
-    /// mapping.
+    /// The film without what the light of the whole frame goes into: glare, beam, spikes, flare, auto exposure, local
+    /// tone mapping.
     pub fn of_parts(self) -> Self {
         let (auto_exposure, optics) = (AutoExposure::default(), Optics::default());
         Self { bloom: 0.0, beam_fwhm: 0.0, optics, auto_exposure, highlights: 0.0, shadows: 0.0, ..self }
@@ -235,6 +249,7 @@ impl Film {
             ("beam_fwhm", "its light", self.beam_fwhm),
             ("spikes", "their light", self.optics.spikes),
             ("streak", "its light", self.optics.streak),
+            ("flare", "its light", self.optics.flare),
             ("auto_exposure", "the exposure", self.auto_exposure.strength),
             ("highlights", "what is bright", self.highlights),
             ("shadows", "what is dark", self.shadows),
@@ -275,6 +290,7 @@ impl Film {
             ("streak", optics.streak, 0.0, 1.0),
             ("streak_length", optics.streak_length, 0.01, 4.0),
             ("streak_tint", optics.streak_tint, -1.0, 1.0),
+            ("flare", optics.flare, 0.0, 1.0),
             ("paper_white", self.paper_white, 10.0, 1000.0),
             ("peak", self.peak, 100.0, 10000.0),
         ] {
@@ -285,6 +301,9 @@ impl Film {
         if !matches!(optics.spike_blades, 0 | 3..=8) {
             let range = out_of_range("film spike_blades", optics.spike_blades.into(), 3.0, 8.0);
             return Err(Error::argument(format!("{range}, or be 0")));
+        }
+        if optics.flare_ghosts > MOST_GHOSTS {
+            return Err(out_of_range("film flare_ghosts", optics.flare_ghosts.into(), 0.0, MOST_GHOSTS.into()));
         }
         let white = grade.white_balance;
         if white != 0.0 && !(COOLEST_WHITE..=HOTTEST_WHITE).contains(&white) {

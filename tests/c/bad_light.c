@@ -344,6 +344,11 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, peak), NAN, "peak"},
         {offsetof(BhrFilm, peak), INFINITY, "peak"},
         {offsetof(BhrFilm, peak), -INFINITY, "peak"},
+        {offsetof(BhrFilm, flare), -0.001, "flare"},
+        {offsetof(BhrFilm, flare), 1.001, "flare"},
+        {offsetof(BhrFilm, flare), NAN, "flare"},
+        {offsetof(BhrFilm, flare), INFINITY, "flare"},
+        {offsetof(BhrFilm, flare), -INFINITY, "flare"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));
@@ -361,6 +366,15 @@ static void film(Watch *watch, BhrContext *context) {
         CHECK_OK(bhr_film_init(&value, sizeof value));
         value.spike_blades = blades[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spike_blades", bhr_set_film(context, &value));
+    }
+    static const uint32_t ghosts[] = {9, 1000, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(ghosts); i++) {
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        value.flare_ghosts = ghosts[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flare_ghosts", bhr_set_film(context, &value));
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        value.reserved = ghosts[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_film(context, &value));
     }
     /* At the limits: from black to white, under every tone map. */
     for (int32_t tone_map = BHR_TONE_MAP_NONE; tone_map <= BHR_TONE_MAP_FILMIC; tone_map++) {

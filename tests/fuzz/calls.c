@@ -272,7 +272,7 @@ static void scene_call(BhrContext *context) {
         film.lut_strength = number(), film.spike_blades = byte();
         film.spikes = number(), film.spike_angle = number(), film.spike_length = number();
         film.streak = number(), film.streak_length = number(), film.streak_tint = number();
-        film.paper_white = number(), film.peak = number();
+        film.paper_white = number(), film.peak = number(), film.flare = number(), film.flare_ghosts = byte();
         check(bhr_set_film(context, &film));
         for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {
             nodes[i] = byte() < 255 ? byte() / 255.0f : (float)number();

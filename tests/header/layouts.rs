@@ -147,7 +147,7 @@ fn layouts_hold_in_rust() {
             tint, contrast, saturation, toe_strength, toe_length, shoulder_strength, shoulder_length, shoulder_angle,
             vignette, auto_exposure, auto_percentile, auto_target, auto_least_ev, auto_most_ev, auto_adaptation,
             highlights, shadows, grain, grain_seed, lut_strength, spikes, spike_angle, spike_length, streak,
-            streak_length, streak_tint, paper_white, peak }
+            streak_length, streak_tint, paper_white, peak, flare, flare_ghosts, reserved }
         preset::BhrPresetOptions { struct_size, matter, width, height, frame_ms, measure_anew, may_halve }
         quality::BhrQuality {
             struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale,

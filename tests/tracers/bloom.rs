@@ -31,7 +31,7 @@ fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()))
 }
 
-const SCENES: [(&str, Change); 8] = [
+const SCENES: [(&str, Change); 10] = [
     ("default", |_| ()),
     ("three stops more, spin 0.9, AgX", |s| {
         (s.hole.spin, s.film.exposure_ev, s.film.tone_map) = (0.9, 3.0, ToneMap::Agx);
@@ -47,6 +47,14 @@ const SCENES: [(&str, Change); 8] = [
     ("spikes and a streak, metered, spin 0.9", |s| {
         (s.hole.spin, s.film.auto_exposure.strength, s.film.highlights) = (0.9, 1.0, 0.5);
         s.film.optics = Optics { spikes: 0.5, streak: 1.0, streak_tint: 0.7, ..Optics::default() };
+    }),
+    ("a flare, stars alone", |s| {
+        (s.disk, s.film.exposure_ev) = (None, 8.0);
+        s.film.optics = Optics { flare: 1.0, flare_ghosts: 8, spike_blades: 3, spike_angle: 0.3, ..Optics::default() };
+    }),
+    ("a flare, a streak and a beam", |s| {
+        (s.film.exposure_ev, s.film.beam_fwhm) = (2.0, 0.05);
+        s.film.optics = Optics { flare: 1.0, streak: 0.5, ..Optics::default() };
     }),
     ("several samples, turbulent, translucent", |s| {
         s.quality.samples_per_pixel = 3;
@@ -69,6 +77,19 @@ fn gpu_and_cpu_pictures_agree() {
             assert!(differ as f64 <= 1e-3 * f64::from(size[0] * size[1]), "{name}, {size:?}: {differ} pixels differ");
         }
     }
+}
+
+/// A cell of the widest frames gathers from 528 x 528 pixels, of which almost all lie beyond a frame of one row.
+#[test]
+fn the_widest_frames_have_their_light() {
+    let size = [1 << 20, 1];
+    let pictures = both().map(|(_, mut renderer)| {
+        (renderer.scene.disk, renderer.scene.film.bloom) = (None, 1.0);
+        renderer.scene.film.exposure_ev = 4.0;
+        picture(&mut renderer, PixelFormat::Rgba8Srgb, size)
+    });
+    let sums = pictures.map(|pixels| pixels.iter().map(|v| u64::from(*v)).sum::<u64>() as f64);
+    assert!((sums[0] / sums[1] - 1.0).abs() < 0.01, "{sums:?}");
 }
 
 /// A frame whose light is kept, against one that is traced twice, tile by tile; then again after other frames.

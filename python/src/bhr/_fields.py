@@ -262,9 +262,9 @@ class Sky(Struct):
 @dataclasses.dataclass(frozen=True)
 class Film(Struct):
     """How light becomes pixels, in formats of 8 and 10 bits and windows of View.LIGHT only: float formats hold linear
-    radiance, and other views show values. In this order: exposure, bloom, beam, spikes and streak, auto exposure,
-    highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and the LUT,
-    or the colour map, dithering."""
+    radiance, and other views show values. In this order: exposure, bloom, beam, flare, spikes and streak, auto
+    exposure, highlights and shadows, vignette, white balance, contrast, saturation, grain, tone map, the sRGB curve and
+    the LUT, or the colour map, dithering."""
 
     c_name: ClassVar[str] = "BhrFilm"
     c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
@@ -369,6 +369,13 @@ class Film(Struct):
     #: BHR_FORMAT_RGB10A2_*: the brightest that the display shows, cd/m^2, 100 .. 10000, to which brighter light is
     #: rolled off. Default 1000.
     peak: float = 1000.0
+    #: Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
+    #: images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
+    #: middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
+    #: they are rendered. docs/colour-and-film.md.
+    flare: float = 0.0
+    #: How many ghosts each light has, 0 .. 8; 0, the default, stands for 5.
+    flare_ghosts: int = 0
 
 
 @dataclasses.dataclass(frozen=True)

@@ -85,6 +85,7 @@ fn random_value(section: Section, field: &Field, random: &mut Random) -> Value {
         (_, "samples_per_pixel", _) => Value::Count(within(1.0, 256.0) as u32),
         (_, "max_steps", _) => Value::Count(within(16.0, 100_000.0) as u32),
         (Section::Film, "paper_white" | "peak", _) => numbers(&[within(100.0, 1000.0)]),
+        (_, "flare_ghosts", _) => Value::Count(within(1.0, 8.99) as u32),
         (_, "spike_blades", _) => Value::Count(within(3.0, 8.99) as u32),
         (_, "max_disk_order", _) => Value::Count(within(0.0, 15.0) as u32),
         (_, "full_width" | "full_height", _) => Value::Count(within(1000.0, 2000.0) as u32),

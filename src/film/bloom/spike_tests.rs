@@ -5,13 +5,13 @@ use super::*;
 use crate::scene::Film;
 use std::f64::consts::PI;
 
-type Field = Vec<[f32; 4]>;
+pub(super) type Field = Vec<[f32; 4]>;
 
 fn optics(spikes: f64, streak: f64) -> Optics {
     Optics { spikes, streak, ..Optics::default() }
 }
 
-fn spread(optics: Optics, frame: [u32; 2], light: &Field) -> Field {
+pub(super) fn spread(optics: Optics, frame: [u32; 2], light: &Field) -> Field {
     let bloom = Bloom::of(&Film { bloom: 0.0, optics, ..Film::plain() }, frame).expect("grids");
     let mut accumulator = bloom.accumulator().expect("a grid");
     accumulator.add([0, 0], frame[0], light);
@@ -20,7 +20,7 @@ fn spread(optics: Optics, frame: [u32; 2], light: &Field) -> Field {
     light.iter().enumerate().map(|(i, v)| glare.over(*v, place(i).0, place(i).1)).collect()
 }
 
-fn point([width, height]: [u32; 2], [x, y]: [u32; 2]) -> Field {
+pub(super) fn point([width, height]: [u32; 2], [x, y]: [u32; 2]) -> Field {
     let mut light = vec![[0.0; 4]; (width * height) as usize];
     light[(y.min(height - 1) * width + x.min(width - 1)) as usize] = [1000.0; 4];
     light

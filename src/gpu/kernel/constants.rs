@@ -13,7 +13,7 @@ use crate::emit::{
     along, baked, baking, bands, clouds, filaments, glow, half, layers, matter, medium, shape, streaks, turbulence,
     volumes,
 };
-use crate::film::bloom::{BEAM_SHARES, SPIKE_ELEMENTS, SPIKE_TERMS};
+use crate::film::bloom::{BEAM_SHARES, GHOST_PAIRS, SPIKE_ELEMENTS, SPIKE_TERMS};
 use crate::film::hdr;
 use crate::film::{self, colour_map, grade, metering, tone_map};
 use crate::image::PixelFormat;
@@ -331,6 +331,8 @@ fn all() -> Vec<(&'static str, String)> {
         COLOUR_MAP_NONE: u32 = ColourMap::None;
         LUMINANCE: vec3 = colour_map::LUMINANCE;
         BEAM_QUARTERS: i32 = BEAM_SHARES / 4;
+        MOST_GHOSTS: u32 = crate::scene::film::MOST_GHOSTS;
+        GHOST_PAIRS: u32 = GHOST_PAIRS;
         SPIKE_TERMS: u32 = SPIKE_TERMS;
         SPIKE_ELEMENTS: u32 = SPIKE_ELEMENTS;
         FORMAT_BGRA8: u32 = PixelFormat::Bgra8Srgb;

@@ -35,6 +35,8 @@ pub enum KernelKind {
     Upsample,
     Beam,
     /// Spikes: spreads light along a line, adds it to the finest grid's.
+    DrawGhosts,
+    AddGhosts,
     SpreadLine,
     AddLine,
     /// Metering: counts the cells of the finest grid, finds the exposure, smooths the counts.
@@ -157,6 +159,8 @@ impl KernelKind {
             | Self::GatherBase
             | Self::Upsample
             | Self::Beam
+            | Self::DrawGhosts
+            | Self::AddGhosts
             | Self::SpreadLine
             | Self::AddLine
             | Self::Measure
@@ -183,6 +187,8 @@ impl KernelKind {
             Self::Gather | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
+            Self::DrawGhosts => "draw_ghosts",
+            Self::AddGhosts => "add_ghosts",
             Self::SpreadLine => "spread_line",
             Self::AddLine => "add_line",
             Self::Measure => "measure",
@@ -215,6 +221,8 @@ impl KernelKind {
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
+            Self::DrawGhosts => wgsl::kernel("bloom/ghosts"),
+            Self::AddGhosts => wgsl::kernel("bloom/ghosted"),
             Self::SpreadLine => wgsl::kernel("bloom/spikes"),
             Self::AddLine => wgsl::kernel("bloom/spiked"),
             Self::Measure => wgsl::kernel("metering/measure"),
@@ -261,7 +269,9 @@ impl KernelKind {
                 };
                 vec![vec![Slot::UniformPart], light, target.slots()]
             }
-            Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
+            Self::Beam | Self::DrawGhosts => {
+                vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]]
+            }
             Self::SpreadLine => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::Write]],
             Self::AddLine => {
                 vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::Read, Slot::TextureWrite(LIGHT)]]
@@ -280,6 +290,11 @@ impl KernelKind {
             Self::Bake => vec![bake_slots()],
             Self::Gather | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
+            }
+            Self::AddGhosts => {
+                let [glare, drawn] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
+                let own = Slot::Texture(LIGHT);
+                vec![vec![Slot::UniformPart, glare, drawn, Slot::Sampler, own, Slot::TextureWrite(LIGHT)]]
             }
             Self::Upsample => {
                 let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];

@@ -203,6 +203,8 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
         ("bloom, beam", kernel("bloom/beam")),
+        ("bloom, ghosts", kernel("bloom/ghosts")),
+        ("bloom, ghosted", kernel("bloom/ghosted")),
         ("bloom, spikes", kernel("bloom/spikes")),
         ("bloom, spiked", kernel("bloom/spiked")),
         ("sky map, level", sky_level(false)),

@@ -2,6 +2,7 @@
 //! Bloom on the GPU: the passes that spread a frame's light over its grids. What goes where, and why, is in
 //! src/film/bloom.rs. Knows light, not what makes it.
 
+use super::ghosts::GhostStages;
 use super::spikes::SpikeStages;
 use crate::error::{Error, Result};
 use crate::film::bloom::Bloom;
@@ -26,6 +27,7 @@ pub struct BloomStages {
     sizes: Vec<[u32; 2]>,
     stride: u32,
     beam: Option<BeamStages>,
+    ghosts: Option<GhostStages>,
     spikes: Option<SpikeStages>,
 }
 
@@ -60,12 +62,21 @@ impl BloomBuffers {
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
         let beam = bloom.beam.as_ref().zip(resources.beam.as_ref());
         let beam = beam.map(|(beam, made)| resources.beam_stages(device, kernels, beam.level, made)).transpose()?;
+        let ghosts = bloom.ghosts.as_ref().zip(resources.ghosts.as_ref()).map(|(ghosts, made)| {
+            let source = resources.gathered.get(ghosts.source);
+            let source = source.ok_or_else(|| Error::internal("ghosts without a grid"))?;
+            let own = resources.gathered.first().ok_or_else(|| Error::internal("ghosts without a grid"))?;
+            let grids = [source, own, resources.glare_before_ghosts(bloom)?];
+            GhostStages::new(device, kernels, made, grids, resources.smooth())
+        });
+        let ghosts = ghosts.transpose()?;
         let spikes = bloom.spikes.as_ref().zip(resources.spikes.as_ref()).map(|made| {
             let own = resources.gathered.first().ok_or_else(|| Error::internal("spikes without a grid"))?;
-            SpikeStages::new(device, kernels, made, [own, resources.glare_without_spikes(bloom)?])
+            SpikeStages::new(device, kernels, made, [own, resources.glare_before_spikes(bloom)?])
         });
         let spikes = spikes.transpose()?;
-        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32, beam, spikes })
+        let stride = uniform_stride::<LevelUniform>(device) as u32;
+        Ok(BloomStages { gather, upsample, sizes, stride, beam, ghosts, spikes })
     }
 }
 
@@ -111,6 +122,7 @@ impl BloomStages {
             stage.dispatch(pass, (index as u32 + 1) * self.stride, *size);
             self.spread_beam(pass, index);
         }
+        self.ghosts.iter().for_each(|ghosts| ghosts.draw(pass));
         self.spikes.iter().for_each(|spikes| spikes.spread(pass));
     }
 

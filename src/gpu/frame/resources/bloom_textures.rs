@@ -3,6 +3,7 @@
 //! What goes where, and why, is in src/film/bloom.rs. Knows no kernels.
 
 use super::cached_uniform::CachedUniform;
+use super::ghost_buffers::GhostResources;
 use super::spike_buffers::SpikeResources;
 use crate::error::{Error, Result};
 use crate::film::bloom::{BEAM_SHARES, Beam, Bloom, Level, MOST_LEVELS, TAIL};
@@ -65,6 +66,7 @@ pub struct BloomResources {
     /// A `LevelUniform` for each grid, `uniform_stride` apart.
     levels: CachedUniform,
     pub beam: Option<BeamResources>,
+    pub ghosts: Option<GhostResources>,
     pub spikes: Option<SpikeResources>,
 }
 
@@ -94,6 +96,7 @@ impl BloomResources {
             Ok::<_, Error>(BeamResources { rows: texture("light of a beam", size)?, passes })
         });
         let cells = bloom.levels.first().map_or([1, 1], |base| base.size);
+        let ghosts = bloom.ghosts.as_ref().map(|ghosts| GhostResources::new(device, ghosts, cells));
         let spikes = bloom.spikes.as_ref().map(|spikes| SpikeResources::new(device, spikes, cells));
         let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
         let filter = wgpu::FilterMode::Linear;
@@ -105,6 +108,7 @@ impl BloomResources {
             spread: grids("spread light", but_last)?,
             levels: CachedUniform::new(device, "bloom levels", bytes)?,
             beam: beam.transpose()?,
+            ghosts: ghosts.transpose()?,
             spikes: spikes.transpose()?,
         })
     }
@@ -116,8 +120,10 @@ impl BloomResources {
             (Some(made), Some(spikes)) => made.serves(device, spikes),
             (made, spikes) => made.is_none() && spikes.is_none(),
         };
+        let ghosts = self.ghosts.as_ref().map(|made| made.drawn.size());
         let sizes = self.gathered.iter().map(Texture::size);
         spikes
+            && ghosts == bloom.ghosts.as_ref().map(|ghosts| ghosts.numbers.target_cells)
             && self.light.size() == light
             && sizes.eq(bloom.levels.iter().map(|level| level.size))
             && self.beam.as_ref().map(|beam| beam.rows.size()) == beam_size(bloom)
@@ -127,12 +133,20 @@ impl BloomResources {
     fn glare(&self, bloom: &Bloom) -> Result<&Texture> {
         match (&bloom.spikes, &self.spikes) {
             (Some(spikes), Some(made)) => made.sum(spikes),
-            _ => self.glare_without_spikes(bloom),
+            _ => self.glare_before_spikes(bloom),
         }
     }
 
     /// The light that the finest grid spreads before any is thrown along lines.
-    pub fn glare_without_spikes(&self, bloom: &Bloom) -> Result<&Texture> {
+    pub fn glare_before_spikes(&self, bloom: &Bloom) -> Result<&Texture> {
+        match &self.ghosts {
+            Some(ghosts) => Ok(&ghosts.sum),
+            None => self.glare_before_ghosts(bloom),
+        }
+    }
+
+    /// The light that the finest grid spreads before what a lens reflects or throws along lines.
+    pub fn glare_before_ghosts(&self, bloom: &Bloom) -> Result<&Texture> {
         let grids = if bloom.levels.len() > 1 { &self.spread } else { &self.gathered };
         grids.first().ok_or_else(|| Error::internal("bloom without a grid"))
     }
@@ -194,6 +208,9 @@ impl BloomBuffers {
         if let Some(((beam, size), made)) = bloom.beam.as_ref().zip(beam_size(bloom)).zip(resources.beam.as_mut()) {
             made.passes.write(device, &beam_uniforms(device, beam, size))?;
         }
+        if let Some((ghosts, made)) = bloom.ghosts.as_ref().zip(resources.ghosts.as_mut()) {
+            made.write(device, ghosts)?;
+        }
         if let Some((spikes, made)) = bloom.spikes.as_ref().zip(resources.spikes.as_mut()) {
             made.write(device, spikes)?;
         }
@@ -205,6 +222,7 @@ impl BloomBuffers {
         if let Some(resources) = &mut self.resources {
             resources.levels.forget();
             resources.beam.iter_mut().for_each(|beam| beam.passes.forget());
+            resources.ghosts.iter_mut().for_each(GhostResources::forget);
             resources.spikes.iter_mut().for_each(SpikeResources::forget);
         }
     }

@@ -11,6 +11,7 @@ pub(in crate::gpu) mod baked;
 pub(in crate::gpu) mod ray_buffers;
 pub(in crate::gpu) mod sky_texture;
 pub(in crate::gpu) mod streaks;
+pub(in crate::gpu) mod ghost_buffers;
 pub(in crate::gpu) mod spike_buffers;
 pub(in crate::gpu) mod bloom_textures;
 pub(in crate::gpu) mod meter_buffers;

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Kernel: draws the ghosts of a lens, each cell of their grid from the light whose images lie there. Mirrors
+// src/film/bloom/ghosts.rs.
+
+#import bloom/flare
+#import bloom/tail
+#import constants
+#import shared/f16
+
+@group(0) @binding(0) var<uniform> flare: GhostNumbers;
+@group(0) @binding(1) var gathered: texture_2d<f32>;
+@group(0) @binding(2) var drawn: texture_storage_2d<rgba16float, write>;
+
+// The source's cells, from and up to, whose images may reach a place.
+fn seen(ghost: Ghost, place: vec2<f32>) -> vec4<i32> {
+    let middle = (flare.middle + (place - flare.middle) / ghost.magnification) / flare.step - 0.5;
+    let reach = ghost.reach / (abs(ghost.magnification) * flare.step);
+    let cells = vec2<f32>(flare.source_cells);
+    let begin = clamp(ceil(middle - reach), vec2<f32>(0.0), cells);
+    let end = clamp(floor(middle + reach) + 1.0, vec2<f32>(0.0), cells);
+    return vec4<i32>(vec2<i32>(begin), vec2<i32>(end));
+}
+
+// A place in a ghost as the aperture lies, from the middle of the image of a source's cell.
+fn offset(ghost: Ghost, place: vec2<f32>, cell: vec2<i32>) -> vec2<f32> {
+    let source = (vec2<f32>(cell) + 0.5) * flare.step - flare.middle;
+    return sign(ghost.magnification) * (place - flare.middle - ghost.magnification * source);
+}
+
+// How much a ghost has of its light at a place, by colour.
+fn inside(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
+    var edge = dot(flare.normals[0].xy, place);
+    for (var blade = 1u; blade < flare.blades; blade += 1u) {
+        let pair = flare.normals[min(blade / 2u, GHOST_PAIRS - 1u)];
+        edge = max(edge, dot(select(pair.xy, pair.zw, blade % 2u == 1u), place));
+    }
+    return clamp((ghost.apothems.xyz - edge) / ghost.softness + 0.5, vec3<f32>(0.0), vec3<f32>(1.0));
+}
+
+// The light that a ghost has at a place: of every source's cell whose image lies there.
+fn ghost_light(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
+    let cells = seen(ghost, place);
+    let last = vec2<i32>(flare.source_cells) - 1;
+    var sum = vec3<f32>(0.0);
+    for (var y = cells.y; y < cells.w; y += 1) {
+        let down = covered(last.y - y, flare.tail_y);
+        for (var x = cells.x; x < cells.z; x += 1) {
+            let cell = vec2<i32>(x, y);
+            let light = textureLoad(gathered, cell, 0).xyz;
+            let part = covered(last.x - x, flare.tail_x) * down
+                * reflected((vec2<f32>(cell) + 0.5) * flare.step, flare.middle);
+            sum += part * inside(ghost, offset(ghost, place, cell)) * light;
+        }
+    }
+    return ghost.shares.xyz * sum;
+}
+
+@compute @workgroup_size(8, 16)
+fn draw_ghosts(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= flare.target_cells) {
+        return;
+    }
+    let place = vec2<f32>(id.xy) + 0.5;
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u) {
+        sum += ghost_light(flare.ghosts[i], place);
+    }
+    textureStore(drawn, id.xy, rounded_to_f16(vec4<f32>(sum, 1.0)));
+}

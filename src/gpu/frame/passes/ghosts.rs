@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Lens flare on the GPU: the passes that draw ghosts, and add them to what the finest grid spreads. Where they lie,
+//! and why, is in src/film/bloom/ghosts.rs. Knows light, not what makes it.
+
+use crate::error::Result;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::resources::bloom_textures::view;
+use crate::gpu::frame::resources::ghost_buffers::GhostResources;
+use crate::gpu::kernel::kernels::Kernels;
+use crate::gpu::kernel::key::KernelKind;
+use crate::gpu::kernel::stage::Stage;
+
+pub struct GhostStages {
+    draw: Stage,
+    add: Stage,
+    /// Sizes of the grid on which ghosts are drawn, and of the finest.
+    sizes: [[u32; 2]; 2],
+}
+
+impl GhostStages {
+    /// `source`: the grid whose light is reflected; `own`: the light of the finest grid; `glare`: what that spreads
+    /// without them.
+    pub fn new(
+        device: &Device,
+        kernels: &Kernels,
+        resources: &GhostResources,
+        [source, own, glare]: [&Texture; 3],
+        smooth: wgpu::BindingResource<'_>,
+    ) -> Result<Self> {
+        let drawn = || view(&resources.drawn);
+        let draw = [resources.numbers(), view(source), drawn()];
+        let add = [resources.numbers(), view(glare), drawn(), smooth, view(own), view(&resources.sum)];
+        Ok(Self {
+            draw: kernels.get(KernelKind::DrawGhosts)?.stage(device, &[&draw])?,
+            add: kernels.get(KernelKind::AddGhosts)?.stage(device, &[&add])?,
+            sizes: [resources.drawn.size(), resources.sum.size()],
+        })
+    }
+
+    /// Once all grids have their light, and the finest has what it spreads without ghosts.
+    pub fn draw(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let [drawn, finest] = self.sizes;
+        self.draw.dispatch(pass, 0, drawn);
+        self.add.dispatch(pass, 0, finest);
+    }
+}
