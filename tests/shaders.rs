@@ -158,7 +158,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gather", "for (var x = first.x; x < taps.x; x += 1)", CONSTANT),
     ("bloom/ghosts", "inside", "for (var blade = 1u; blade < flare.blades; blade += 1u)", BLADES),
     ("bloom/ghosts", "ghost_light", "for (var y = cells.y; y < cells.w; y += 1)", SOURCE),
-    ("bloom/ghosts", "ghost_light", "for (var x = cells.x; x < cells.z; x += 1)", SOURCE),
+    ("bloom/ghosts", "ghost_light", "for (var x = cells.x; x < cells.z; x += 4)", SOURCE),
     ("bloom/ghosts", "draw_ghosts", "for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u)", CONSTANT),
     ("bloom/spikes", "element_light", "for (var j = first; j < end; j += 1u)", ELEMENT),
     ("bloom/spikes", "spread_line", "for (var term = 0u; term < SPIKE_TERMS; term += 1u)", CONSTANT),

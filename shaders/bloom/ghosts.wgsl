@@ -3,12 +3,11 @@
 // src/film/bloom/ghosts.rs.
 
 #import bloom/flare
-#import bloom/tail
 #import constants
 #import shared/f16
 
 @group(0) @binding(0) var<uniform> flare: GhostNumbers;
-@group(0) @binding(1) var gathered: texture_2d<f32>;
+@group(0) @binding(1) var reflected_light: texture_2d<f32>;
 @group(0) @binding(2) var drawn: texture_storage_2d<rgba16float, write>;
 
 // The source's cells, from and up to, whose images may reach a place.
@@ -37,19 +36,24 @@ fn inside(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
     return clamp((ghost.apothems.xyz - edge) / ghost.softness + 0.5, vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
-// The light that a ghost has at a place: of every source's cell whose image lies there.
+// The light that a cell of the source gives a ghost at a place; none from the column `end` on.
+fn cell_light(ghost: Ghost, place: vec2<f32>, cell: vec2<i32>, end: i32) -> vec3<f32> {
+    let light = textureLoad(reflected_light, vec2<i32>(min(cell.x, end - 1), cell.y), 0).xyz;
+    return select(vec3<f32>(0.0), inside(ghost, offset(ghost, place, cell)) * light, cell.x < end);
+}
+
+// The light that a ghost has at a place: of every source's cell whose image lies there. Four cells at a time, so that
+// none waits for the one before it.
 fn ghost_light(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
     let cells = seen(ghost, place);
-    let last = vec2<i32>(flare.source_cells) - 1;
     var sum = vec3<f32>(0.0);
     for (var y = cells.y; y < cells.w; y += 1) {
-        let down = covered(last.y - y, flare.tail_y);
-        for (var x = cells.x; x < cells.z; x += 1) {
-            let cell = vec2<i32>(x, y);
-            let light = textureLoad(gathered, cell, 0).xyz;
-            let part = covered(last.x - x, flare.tail_x) * down
-                * reflected((vec2<f32>(cell) + 0.5) * flare.step, flare.middle);
-            sum += part * inside(ghost, offset(ghost, place, cell)) * light;
+        for (var x = cells.x; x < cells.z; x += 4) {
+            let light0 = cell_light(ghost, place, vec2<i32>(x, y), cells.z);
+            let light1 = cell_light(ghost, place, vec2<i32>(x + 1, y), cells.z);
+            let light2 = cell_light(ghost, place, vec2<i32>(x + 2, y), cells.z);
+            let light3 = cell_light(ghost, place, vec2<i32>(x + 3, y), cells.z);
+            sum += (light0 + light1) + (light2 + light3);
         }
     }
     return ghost.shares.xyz * sum;

@@ -164,12 +164,13 @@ impl Ghosts {
     /// OUT_OF_MEMORY.
     pub(super) fn drawn(&self, source: &[[f32; 4]]) -> Result<Vec<[f32; 4]>> {
         let [width, height] = self.numbers.target_cells.map(|side| side as usize);
+        let source = self.numbers.reflected_light(source)?;
         let mut target = filled(width * height, [0.0_f32; 4], GHOST_GRID)?;
         target.par_chunks_mut(width).enumerate().for_each(|(y, cells)| {
             for (x, cell) in cells.iter_mut().enumerate() {
                 let place = [x as f32 + 0.5, y as f32 + 0.5];
                 for ghost in &self.numbers.ghosts[..self.numbers.count as usize] {
-                    let light = self.numbers.ghost_light(source, ghost, place);
+                    let light = self.numbers.ghost_light(&source, ghost, place);
                     (0..3).for_each(|c| cell[c] += light[c]);
                 }
             }
@@ -253,6 +254,20 @@ fn ghost_area(apothem: f64, softness: f64) -> f64 {
 }
 
 impl GhostNumbers {
+    /// The light of the source's cells that is reflected.
+    fn reflected_light(&self, source: &[[f32; 4]]) -> Result<Vec<[f32; 4]>> {
+        let mut light = filled(source.len(), [0.0_f32; 4], GHOST_GRID)?;
+        for (number, (light, own)) in (0..).zip(light.iter_mut().zip(source)) {
+            let cell: [u32; 2] = [number % self.source_cells[0], number / self.source_cells[0]];
+            let part = |side: usize| {
+                let place = (cell[side] as f32 + 0.5) * self.step;
+                self.coverage(side, cell[side]) * self.reflected(side, place)
+            };
+            *light = own.map(|v| part(0) * part(1) * v);
+        }
+        Ok(light)
+    }
+
     /// The light that a ghost has at a place of the target: of every source's cell whose image lies there.
     fn ghost_light(&self, source: &[[f32; 4]], ghost: &Ghost, place: [f32; 2]) -> [f32; 3] {
         let [columns, rows] = [0, 1].map(|side| self.seen(ghost, place[side], side));
@@ -260,11 +275,8 @@ impl GhostNumbers {
         for y in rows {
             for x in columns.clone() {
                 let inside = self.inside(ghost, self.offset(ghost, place, [x, y]));
-                let from = [x, y].map(|cell| (cell as f32 + 0.5) * self.step);
-                let reflected = self.reflected(0, from[0]) * self.reflected(1, from[1]);
-                let covered = reflected * self.coverage(0, x) * self.coverage(1, y);
                 let light = source[(y * self.source_cells[0] + x) as usize];
-                (0..3).for_each(|c| sum[c] += covered * inside[c] * light[c]);
+                (0..3).for_each(|c| sum[c] += inside[c] * light[c]);
             }
         }
         std::array::from_fn(|c| ghost.shares[c] * sum[c])

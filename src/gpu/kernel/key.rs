@@ -35,6 +35,7 @@ pub enum KernelKind {
     Upsample,
     Beam,
     /// Spikes: spreads light along a line, adds it to the finest grid's.
+    ReflectLight,
     DrawGhosts,
     AddGhosts,
     SpreadLine,
@@ -159,6 +160,7 @@ impl KernelKind {
             | Self::GatherBase
             | Self::Upsample
             | Self::Beam
+            | Self::ReflectLight
             | Self::DrawGhosts
             | Self::AddGhosts
             | Self::SpreadLine
@@ -187,6 +189,7 @@ impl KernelKind {
             Self::Gather | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
+            Self::ReflectLight => "reflect_light",
             Self::DrawGhosts => "draw_ghosts",
             Self::AddGhosts => "add_ghosts",
             Self::SpreadLine => "spread_line",
@@ -221,6 +224,7 @@ impl KernelKind {
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
+            Self::ReflectLight => wgsl::kernel("bloom/reflected"),
             Self::DrawGhosts => wgsl::kernel("bloom/ghosts"),
             Self::AddGhosts => wgsl::kernel("bloom/ghosted"),
             Self::SpreadLine => wgsl::kernel("bloom/spikes"),
@@ -269,7 +273,7 @@ impl KernelKind {
                 };
                 vec![vec![Slot::UniformPart], light, target.slots()]
             }
-            Self::Beam | Self::DrawGhosts => {
+            Self::Beam | Self::ReflectLight | Self::DrawGhosts => {
                 vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]]
             }
             Self::SpreadLine => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::Write]],

@@ -203,6 +203,7 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
         ("bloom, beam", kernel("bloom/beam")),
+        ("bloom, reflected", kernel("bloom/reflected")),
         ("bloom, ghosts", kernel("bloom/ghosts")),
         ("bloom, ghosted", kernel("bloom/ghosted")),
         ("bloom, spikes", kernel("bloom/spikes")),

@@ -12,10 +12,11 @@ use crate::gpu::kernel::key::KernelKind;
 use crate::gpu::kernel::stage::Stage;
 
 pub struct GhostStages {
+    reflect: Stage,
     draw: Stage,
     add: Stage,
-    /// Sizes of the grid on which ghosts are drawn, and of the finest.
-    sizes: [[u32; 2]; 2],
+    /// Sizes of the grids: the one whose light is reflected, the one on which ghosts are drawn, and the finest.
+    sizes: [[u32; 2]; 3],
 }
 
 impl GhostStages {
@@ -28,19 +29,22 @@ impl GhostStages {
         [source, own, glare]: [&Texture; 3],
         smooth: wgpu::BindingResource<'_>,
     ) -> Result<Self> {
-        let drawn = || view(&resources.drawn);
-        let draw = [resources.numbers(), view(source), drawn()];
+        let (reflected, drawn) = (|| view(&resources.reflected), || view(&resources.drawn));
+        let reflect = [resources.numbers(), view(source), reflected()];
+        let draw = [resources.numbers(), reflected(), drawn()];
         let add = [resources.numbers(), view(glare), drawn(), smooth, view(own), view(&resources.sum)];
         Ok(Self {
+            reflect: kernels.get(KernelKind::ReflectLight)?.stage(device, &[&reflect])?,
             draw: kernels.get(KernelKind::DrawGhosts)?.stage(device, &[&draw])?,
             add: kernels.get(KernelKind::AddGhosts)?.stage(device, &[&add])?,
-            sizes: [resources.drawn.size(), resources.sum.size()],
+            sizes: [resources.reflected.size(), resources.drawn.size(), resources.sum.size()],
         })
     }
 
     /// Once all grids have their light, and the finest has what it spreads without ghosts.
     pub fn draw(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let [drawn, finest] = self.sizes;
+        let [source, drawn, finest] = self.sizes;
+        self.reflect.dispatch(pass, 0, source);
         self.draw.dispatch(pass, 0, drawn);
         self.add.dispatch(pass, 0, finest);
     }

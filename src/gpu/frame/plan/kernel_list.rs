@@ -64,7 +64,8 @@ fn bloom_kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
     let gather = (0..count).map(|index| gather_key(bloom, index));
     let beam = bloom.beam.as_ref().map(|_| KernelKind::Beam.into());
     let lines = bloom.spikes.iter().flat_map(|_| [KernelKind::SpreadLine, KernelKind::AddLine]).map(KernelKey::from);
-    let ghosts = bloom.ghosts.iter().flat_map(|_| [KernelKind::DrawGhosts, KernelKind::AddGhosts]).map(KernelKey::from);
+    let of_ghosts = [KernelKind::ReflectLight, KernelKind::DrawGhosts, KernelKind::AddGhosts];
+    let ghosts = bloom.ghosts.iter().flat_map(move |_| of_ghosts).map(KernelKey::from);
     gather.chain((1 < count).then(|| KernelKind::Upsample.into())).chain(beam).chain(ghosts).chain(lines)
 }
 

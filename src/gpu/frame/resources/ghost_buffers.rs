@@ -21,6 +21,8 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
 
 pub struct GhostResources {
     numbers: CachedUniform,
+    /// The light that is reflected.
+    pub reflected: Texture,
     /// The light of all ghosts.
     pub drawn: Texture,
     /// The light that the finest grid spreads, with theirs.
@@ -34,6 +36,7 @@ impl GhostResources {
         let texture = |label: &str, size: [u32; 2]| device.texture(label, format, dimension, size, 1);
         Ok(Self {
             numbers: CachedUniform::new(device, "ghosts of a lens", size_of::<GhostNumbers>() as u64)?,
+            reflected: texture("reflected light", ghosts.numbers.source_cells)?,
             drawn: texture("light of ghosts", ghosts.numbers.target_cells)?,
             sum: texture("light with ghosts", cells)?,
         })

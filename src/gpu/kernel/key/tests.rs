@@ -50,7 +50,7 @@ pub(super) fn kinds() -> Vec<KernelKind> {
     let scattered = |target: &PixelTarget| *target != PixelTarget::Rows;
     let mut kinds =
         vec![Pixels, Blocks, Listed, Fill, Rays, Count, Gather, GatherBase, Upsample, Beam, SpreadLine, AddLine];
-    kinds.extend([DrawGhosts, AddGhosts]);
+    kinds.extend([ReflectLight, DrawGhosts, AddGhosts]);
     kinds.extend([SkyLevel(false), SkyLevel(true), OccluderRows, SchwarzschildEnds, SchwarzschildColumns]);
     kinds.extend([KerrNodes, KerrFlags]);
     for maker in makers {
