@@ -83,7 +83,11 @@ fn command() -> Command {
         .arg(flag("transparent", "Without the sky; alpha says where it was"))
         .arg(option("outputs", "LIST", "Layers of .exr files beside the light: depth,sky,position,position1 .."))
         .arg(option("stereo", "PLACES", "Both eyes of a panorama: top-bottom or side-by-side"))
-        .arg(option("codec", "NAME", "Of a video: h264 (.mp4), h265 (with --hdr), av1, prores (.mov) or prores4444"))
+        .arg(option(
+            "codec",
+            "NAME",
+            "Of a video: h264 (default of .mp4), h265 (default with --hdr), av1, prores (of .mov), prores4444",
+        ))
         .arg(
             option(
                 "quality",

@@ -81,6 +81,7 @@ fn kind_of(given: &ArgMatches) -> Result<(Option<Codec>, PixelFormat), Ending> {
     let format = match (extension.as_deref(), given.get_flag("float")) {
         (_, false) if codec.is_some() => coded,
         (Some("png"), false) => coded,
+        (Some("png"), true) => return Err(Ending::usage("--float: it is for .exr files")),
         (_, _) if hdr.is_some() => {
             return Err(Ending::usage(
                 "--hdr: pictures of high dynamic range are .png files or videos; .exr files hold \

@@ -15,7 +15,7 @@ pub struct Progress(Mutex<Shown>);
 
 enum Shown {
     None,
-    Bar(ProgressBar),
+    Bar(ProgressBar, Count),
     Plain(Count),
     Json(Count),
     /// Lines that Open Job Description's runner reads from stdout: openjd_progress, openjd_status.
@@ -47,20 +47,26 @@ impl Count {
         let rate = self.made as f64 / self.begin.elapsed().as_secs_f64().max(1e-9);
         (self.made > 0).then(|| [rate, self.total.saturating_sub(self.done) as f64 / rate])
     }
+
+    /// The pace in words, to go on a line with.
+    fn told_pace(self) -> String {
+        let words = self.pace().map(|[rate, left]| format!("; {rate:.2} frames a second, {left:.0} s to go"));
+        words.unwrap_or_default()
+    }
 }
 
 impl Progress {
     pub fn new(kind: &str, total: u64) -> Result<Self, Ending> {
         let count = Count { done: 0, made: 0, total, begin: Instant::now() };
         let bar = || {
-            let style = "{bar:40} {pos}/{len} frames, {per_sec}, {elapsed} gone, {eta} to go  {msg}";
+            let style = "{bar:40} {pos}/{len} frames, {elapsed} gone{msg}";
             let bar = ProgressBar::new(total);
             bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar
         };
         let shown = match kind {
-            "auto" if std::io::stderr().is_terminal() => Shown::Bar(bar()),
-            "bar" => Shown::Bar(bar()),
+            "auto" if std::io::stderr().is_terminal() => Shown::Bar(bar(), count),
+            "bar" => Shown::Bar(bar(), count),
             "auto" | "plain" => Shown::Plain(count),
             "json" => Shown::Json(count),
             "openjd" => Shown::OpenJd(count),
@@ -100,7 +106,7 @@ impl Progress {
     }
 
     pub fn end(&self) {
-        if let Shown::Bar(bar) = &*self.lock() {
+        if let Shown::Bar(bar, _) = &*self.lock() {
             bar.finish_and_clear();
         }
     }
@@ -113,21 +119,21 @@ impl Shown {
         let file = file.display();
         match self {
             Self::None => {}
-            Self::Bar(bar) => {
-                bar.set_message(file.to_string());
+            Self::Bar(bar, count) => {
+                count.add(done);
+                bar.set_message(format!("{}  {file}", count.told_pace()));
                 bar.inc(1);
             }
             Self::Plain(count) => {
                 count.add(done);
-                let pace = count.pace().map(|[rate, left]| format!("; {rate:.2} frames a second, {left:.0} s to go"));
-                let pace = pace.unwrap_or_default();
+                let pace = count.told_pace();
                 say(&format!("frame {frame}, {} of {}: {file} ({took}){pace}", count.done, count.total));
             }
             Self::Json(count) => {
                 count.add(done);
                 let [rate, left] = count.pace().map_or([None; 2], |pace| pace.map(Some));
                 let line = json!({"frame": frame, "file": file.to_string(), "seconds": seconds, "done": count.done,
-                                  "total": count.total, "frames_per_second": rate, "seconds_left": left});
+                                  "total": count.total, "pace": rate, "seconds_left": left});
                 say(&line.to_string());
             }
             Self::OpenJd(count) => {

@@ -145,7 +145,6 @@ const CELLS: Because = Because(
 );
 const BLOCK: Because = Because("it counts the cells of a block, of which the host allows 84 along a side");
 const ELEMENT: Because = Because("it counts the cells of an element, of which the host allows 4");
-const BLADES: Because = Because("it counts the blades of an aperture, of which the host allows 8");
 const SOURCE: Because = Because("it counts the cells of a grid along one side, of which the host allows 4000");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
@@ -156,8 +155,8 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = first.y; y < taps.y; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = first.x; x < taps.x; x += 1)", CONSTANT),
-    ("bloom/ghosts", "inside", "for (var blade = 1u; blade < flare.blades; blade += 1u)", BLADES),
-    ("bloom/ghosts", "ghost_light", "for (var y = cells.y; y < cells.w; y += 1)", SOURCE),
+    ("bloom/ghosts", "inside", "for (var pair = 0u; pair < GHOST_PAIRS; pair += 1u)", CONSTANT),
+    ("bloom/ghosts", "ghost_light", "for (var y = cells.y + i32(part); y < cells.w; y += i32(PARTS))", SOURCE),
     ("bloom/ghosts", "ghost_light", "for (var x = cells.x; x < cells.z; x += 4)", SOURCE),
     ("bloom/ghosts", "draw_ghosts", "for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u)", CONSTANT),
     ("bloom/spikes", "element_light", "for (var j = first; j < end; j += 1u)", ELEMENT),

@@ -714,8 +714,8 @@ export interface Film {
     /**
      * Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
      * images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
-     * middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
-     * they are rendered. docs/colour-and-film.md.
+     * middle of the frame. Ghosts of lights near the border are faint: that light is lost, no other. With a region set,
+     * 8- and 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
      * @range 0 .. 1
      * @default 0
      */

@@ -22,13 +22,12 @@ struct GhostNumbers {
     source_cells: vec2<u32>,
     step: f32,
     count: u32,
-    blades: u32,
     fine: f32,
     above: f32,
-    share: f32,
+    reserved: vec2<u32>,
 }
 
-// The part of its share that light is reflected by: 1 in the middle, 0 at the border and beyond.
+// The part of what is reflected that reaches the ghosts: 1 in the middle, 0 at the border and beyond.
 fn reflected(place: vec2<f32>, middle: vec2<f32>) -> f32 {
     let away = clamp((place - middle) / middle, vec2<f32>(-1.0), vec2<f32>(1.0));
     let squared = away * away;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Kernel: draws the ghosts of a lens, each cell of their grid from the light whose images lie there. Mirrors
-// src/film/bloom/ghosts.rs.
+// Kernel: draws the ghosts of a lens, each cell of their grid from the light whose images lie there: four threads, each
+// by every fourth row of the source, as cells in the frame's middle have all ghosts. Mirrors src/film/bloom/ghosts.rs.
 
 #import bloom/flare
 #import constants
@@ -9,6 +9,12 @@
 @group(0) @binding(0) var<uniform> flare: GhostNumbers;
 @group(0) @binding(1) var reflected_light: texture_2d<f32>;
 @group(0) @binding(2) var drawn: texture_storage_2d<rgba16float, write>;
+
+const PARTS: u32 = 4u;
+const ACROSS: u32 = 8u;
+const DOWN: u32 = 4u;
+// The light of the threads of each part.
+var<workgroup> parts: array<vec4<f32>, ACROSS * DOWN * PARTS>;
 
 // The source's cells, from and up to, whose images may reach a place.
 fn seen(ghost: Ghost, place: vec2<f32>) -> vec4<i32> {
@@ -28,11 +34,12 @@ fn offset(ghost: Ghost, place: vec2<f32>, cell: vec2<i32>) -> vec2<f32> {
 
 // How much a ghost has of its light at a place, by colour.
 fn inside(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
-    var edge = dot(flare.normals[0].xy, place);
-    for (var blade = 1u; blade < flare.blades; blade += 1u) {
-        let pair = flare.normals[min(blade / 2u, GHOST_PAIRS - 1u)];
-        edge = max(edge, dot(select(pair.xy, pair.zw, blade % 2u == 1u), place));
+    var edges = vec2<f32>(0.0);
+    for (var pair = 0u; pair < GHOST_PAIRS; pair += 1u) {
+        let along = flare.normals[pair] * place.xyxy;
+        edges = max(edges, along.xz + along.yw);
     }
+    let edge = max(edges.x, edges.y);
     return clamp((ghost.apothems.xyz - edge) / ghost.softness + 0.5, vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
@@ -42,12 +49,12 @@ fn cell_light(ghost: Ghost, place: vec2<f32>, cell: vec2<i32>, end: i32) -> vec3
     return select(vec3<f32>(0.0), inside(ghost, offset(ghost, place, cell)) * light, cell.x < end);
 }
 
-// The light that a ghost has at a place: of every source's cell whose image lies there. Four cells at a time, so that
-// none waits for the one before it.
-fn ghost_light(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
+// The light that a ghost has at a place, from the rows of a part: of every source's cell whose image lies there. Four
+// cells at a time, so that none waits for the one before it.
+fn ghost_light(ghost: Ghost, place: vec2<f32>, part: u32) -> vec3<f32> {
     let cells = seen(ghost, place);
     var sum = vec3<f32>(0.0);
-    for (var y = cells.y; y < cells.w; y += 1) {
+    for (var y = cells.y + i32(part); y < cells.w; y += i32(PARTS)) {
         for (var x = cells.x; x < cells.z; x += 4) {
             let light0 = cell_light(ghost, place, vec2<i32>(x, y), cells.z);
             let light1 = cell_light(ghost, place, vec2<i32>(x + 1, y), cells.z);
@@ -59,15 +66,23 @@ fn ghost_light(ghost: Ghost, place: vec2<f32>) -> vec3<f32> {
     return ghost.shares.xyz * sum;
 }
 
-@compute @workgroup_size(8, 16)
-fn draw_ghosts(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= flare.target_cells) {
-        return;
-    }
-    let place = vec2<f32>(id.xy) + 0.5;
+@compute @workgroup_size(ACROSS, DOWN, PARTS)
+fn draw_ghosts(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_id) thread: vec3<u32>,
+    @builtin(local_invocation_index) index: u32,
+) {
+    let cell = group.xy * vec2<u32>(ACROSS, DOWN) + thread.xy;
+    let place = vec2<f32>(cell) + 0.5;
     var sum = vec3<f32>(0.0);
     for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u) {
-        sum += ghost_light(flare.ghosts[i], place);
+        sum += ghost_light(flare.ghosts[i], place, thread.z);
     }
-    textureStore(drawn, id.xy, rounded_to_f16(vec4<f32>(sum, 1.0)));
+    parts[index] = vec4<f32>(sum, 1.0);
+    workgroupBarrier();
+    if thread.z == 0u && all(cell < flare.target_cells) {
+        const NEXT: u32 = ACROSS * DOWN;
+        let light = (parts[index] + parts[index + NEXT]) + (parts[index + 2u * NEXT] + parts[index + 3u * NEXT]);
+        textureStore(drawn, cell, rounded_to_f16(vec4<f32>(light.xyz, 1.0)));
+    }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Kernel: the light of each cell of the source that a lens reflects. Mirrors src/film/bloom/ghosts.rs.
+// Kernel: the light of each cell of the source that reaches ghosts. Mirrors src/film/bloom/ghosts.rs.
 
 #import bloom/flare
 #import bloom/tail

@@ -384,11 +384,7 @@ impl<'a> BloomAccumulator<'a> {
     /// Once all tiles are in: spreads their light. On the current pool. Errors: OUT_OF_MEMORY.
     pub fn spread(self) -> Result<Glare<'a>> {
         let Self { bloom, base } = self;
-        let own = if bloom.spikes.is_some() || bloom.ghosts.is_some() {
-            collected(base.iter().copied(), GRIDS)?
-        } else {
-            Vec::new()
-        };
+        let own = if bloom.spikes.is_some() { collected(base.iter().copied(), GRIDS)? } else { Vec::new() };
         let mut grids = vec![base];
         for pair in bloom.levels.windows(2) {
             if let ([finer, level], Some(grid)) = (pair, grids.last()) {
@@ -405,7 +401,7 @@ impl<'a> BloomAccumulator<'a> {
             glare = bloom.after_beam(index, bloom.with_coarser(index, grid, &glare))?;
         }
         if let (Some((ghosts, drawn)), Some(base)) = (bloom.ghosts.as_ref().zip(drawn), bloom.levels.first()) {
-            ghosts.add_to(&mut glare, &own, base.size[0], &drawn);
+            ghosts.add_to(&mut glare, base.size[0], &drawn);
         }
         if let Some(spikes) = &bloom.spikes {
             spikes.add_to(&mut glare, &own)?;

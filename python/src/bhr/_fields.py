@@ -371,8 +371,8 @@ class Film(Struct):
     peak: float = 1000.0
     #: Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
     #: images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
-    #: middle of the frame. No light is lost. With a region set, 8- and 10-bit images of light are INVALID_STATE when
-    #: they are rendered. docs/colour-and-film.md.
+    #: middle of the frame. Ghosts of lights near the border are faint: that light is lost, no other. With a region set,
+    #: 8- and 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
     flare: float = 0.0
     #: How many ghosts each light has, 0 .. 8; 0, the default, stands for 5.
     flare_ghosts: int = 0

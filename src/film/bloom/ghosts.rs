@@ -9,9 +9,9 @@
 //! Graph. 30, 108, 2011; S. Lee, E. Eisemann, Comput. Graph. Forum 32, 1, 2013: a ghost is an affine map of the
 //! aperture). Coatings reflect what they do not transmit, so that each ghost has a colour of its own. The ghosts here
 //! are those of no particular lens: their magnifications, sizes and colours are chosen within the range that these
-//! papers show. None reaches out of the frame, and together they are neutral: no light is lost or made. Towards the
-//! frame's border less and less light is reflected, and more stays where it is: ghosts of wide lights would else end in
-//! an image of the border, which no lens knows.
+//! papers show. None reaches out of the frame, and together they are neutral. Light from near the frame's border meets
+//! the lens's barrel on its way to and fro and is lost: ghosts of wide lights would else end in an image of the border,
+//! which no lens knows. A telescope's beam does not blur ghosts.
 //!
 //! How: the light of one of the coarser grids, a few dozen rows, is gathered through the aperture's polygon, which
 //! falls off linearly at its edges, on a grid of a few hundred rows; that is added to what the finest grid spreads.
@@ -25,11 +25,11 @@ use std::f64::consts::PI;
 
 /// The share of all light that `flare` = 1 takes.
 const MOST_REFLECTED: f64 = 0.15;
-/// The most blades of an aperture, whose normals are kept in pairs.
+/// Pairs of normals of an aperture of eight blades, the most.
 pub const GHOST_PAIRS: usize = 4;
 /// The most rows of the grid whose light is reflected, and of that on which ghosts are drawn.
 const MOST_SOURCE_ROWS: u32 = 96;
-const MOST_TARGET_ROWS: u32 = 384;
+const MOST_TARGET_ROWS: u32 = 288;
 /// The width over which a ghost's edge falls off, in cells of the target, at least.
 const LEAST_SOFTNESS: f64 = 2.0;
 /// The least radius of a ghost, in widths of its edge: smaller ones would have no even middle.
@@ -71,7 +71,8 @@ pub struct Ghosts {
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GhostNumbers {
     pub ghosts: [Ghost; MOST_GHOSTS as usize],
-    /// Unit normals of the aperture's edges, two in each.
+    /// Unit normals of the aperture's edges, two in each. Those beyond the blades are 0, as no place lies on the inner
+    /// side of all edges' parallels through the middle.
     pub normals: [[f32; 4]; GHOST_PAIRS],
     /// The part of the source's last cells of a row and of a column that lies in the frame, the very last one last.
     pub tails: [[f32; 4]; 2],
@@ -82,15 +83,13 @@ pub struct GhostNumbers {
     pub source_cells: [u32; 2],
     /// The side of a source's cell.
     pub step: f32,
-    /// How many ghosts there are, and blades.
+    /// How many ghosts there are.
     pub count: u32,
-    pub blades: u32,
     /// The part of a target's cell that a cell of the finest grid is wide.
     pub fine: f32,
     /// The factor on what the finest grid had before.
     pub above: f32,
-    /// The share of all light that is reflected.
-    pub share: f32,
+    pub reserved: [u32; 2],
 }
 
 /// A ghost: `Ghost` of bloom/flare.wgsl.
@@ -140,10 +139,9 @@ impl Ghosts {
             source_cells: *from,
             step: step as f32,
             count,
-            blades,
             fine: 0.5_f64.powi(target as i32) as f32,
             above,
-            share: share as f32,
+            reserved: [0; 2],
         };
         for (blade, normal) in (0..blades).zip(numbers.normals.as_flattened_mut().chunks_exact_mut(2)) {
             let angle = optics.spike_angle + PI * (0.5 + 2.0 * f64::from(blade) / f64::from(blades));
@@ -178,25 +176,19 @@ impl Ghosts {
         Ok(target)
     }
 
-    /// Adds what is `drawn`, and of its cells' `own` light what is not reflected, to what the finest grid, of rows of
-    /// `width`, spreads already. On the current pool.
-    pub(super) fn add_to(&self, spread: &mut [[f32; 4]], own: &[[f32; 4]], width: u32, drawn: &[[f32; 4]]) {
+    /// Adds what is `drawn` to what the finest grid, of rows of `width`, spreads already. On the current pool.
+    pub(super) fn add_to(&self, spread: &mut [[f32; 4]], width: u32, drawn: &[[f32; 4]]) {
         let [columns, rows] = self.numbers.target_cells;
         let near = |i: usize, cells: u32| {
             let place = ((i as f32 + 0.5) * self.numbers.fine - 0.5).clamp(0.0, (cells - 1) as f32);
             let first = place.floor();
             ([first as usize, (first as usize + 1).min(cells as usize - 1)], [1.0 - (place - first), place - first])
         };
-        let place = |i: usize| (i as f32 + 0.5) * self.numbers.fine;
-        let rows_of = spread.par_chunks_mut(width as usize).zip(own.par_chunks(width as usize)).enumerate();
-        rows_of.for_each(|(y, (cells, own))| {
+        spread.par_chunks_mut(width as usize).enumerate().for_each(|(y, cells)| {
             let (rows, down) = near(y, rows);
-            let reflected = self.numbers.reflected(1, place(y));
-            for (x, (cell, own)) in cells.iter_mut().zip(own).enumerate() {
+            for (x, cell) in cells.iter_mut().enumerate() {
                 let (between, across) = near(x, columns);
-                let stays = self.numbers.share * (1.0 - self.numbers.reflected(0, place(x)) * reflected);
                 let mut sum = cell.map(|v| self.numbers.above * v);
-                (0..3).for_each(|c| sum[c] += stays * own[c]);
                 for (row, down) in rows.iter().zip(down) {
                     for (column, across) in between.iter().zip(across) {
                         let light = drawn[row * columns as usize + column];
@@ -254,7 +246,7 @@ fn ghost_area(apothem: f64, softness: f64) -> f64 {
 }
 
 impl GhostNumbers {
-    /// The light of the source's cells that is reflected.
+    /// The light of the source's cells that reaches ghosts.
     fn reflected_light(&self, source: &[[f32; 4]]) -> Result<Vec<[f32; 4]>> {
         let mut light = filled(source.len(), [0.0_f32; 4], GHOST_GRID)?;
         for (number, (light, own)) in (0..).zip(light.iter_mut().zip(source)) {
@@ -298,7 +290,7 @@ impl GhostNumbers {
         })
     }
 
-    /// The part of its share that light is reflected by, as far as one side decides it: 1 in the middle, 0 at the
+    /// The part of what is reflected that reaches the ghosts, as far as one side decides it: 1 in the middle, 0 at the
     /// border and beyond.
     fn reflected(&self, side: usize, place: f32) -> f32 {
         let from = ((place - self.middle[side]) / self.middle[side]).clamp(-1.0, 1.0);
@@ -307,8 +299,8 @@ impl GhostNumbers {
 
     /// How much a ghost has of its light at a place, by colour.
     fn inside(&self, ghost: &Ghost, [x, y]: [f32; 2]) -> [f32; 3] {
-        let normals = self.normals.as_flattened().chunks_exact(2).take(self.blades as usize);
-        let edge = normals.map(|normal| normal[0] * x + normal[1] * y).fold(f32::NEG_INFINITY, f32::max);
+        let edges = self.normals.map(|[ax, ay, bx, by]| (ax * x + ay * y).max(bx * x + by * y));
+        let edge = edges.into_iter().fold(0.0, f32::max);
         std::array::from_fn(|c| ((ghost.apothems[c] - edge) / ghost.softness + 0.5).clamp(0.0, 1.0))
     }
 

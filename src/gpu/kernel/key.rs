@@ -34,10 +34,11 @@ pub enum KernelKind {
     GatherBase,
     Upsample,
     Beam,
-    /// Spikes: spreads light along a line, adds it to the finest grid's.
+    /// Lens flare: finds the light that reaches ghosts, draws them, adds them to the finest grid's light.
     ReflectLight,
     DrawGhosts,
     AddGhosts,
+    /// Spikes: spreads light along a line, adds it to the finest grid's.
     SpreadLine,
     AddLine,
     /// Metering: counts the cells of the finest grid, finds the exposure, smooths the counts.
@@ -295,12 +296,7 @@ impl KernelKind {
             Self::Gather | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
-            Self::AddGhosts => {
-                let [glare, drawn] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
-                let own = Slot::Texture(LIGHT);
-                vec![vec![Slot::UniformPart, glare, drawn, Slot::Sampler, own, Slot::TextureWrite(LIGHT)]]
-            }
-            Self::Upsample => {
+            Self::Upsample | Self::AddGhosts => {
                 let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
                 vec![vec![Slot::UniformPart, finer, coarser, Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }

@@ -65,8 +65,7 @@ impl BloomBuffers {
         let ghosts = bloom.ghosts.as_ref().zip(resources.ghosts.as_ref()).map(|(ghosts, made)| {
             let source = resources.gathered.get(ghosts.source);
             let source = source.ok_or_else(|| Error::internal("ghosts without a grid"))?;
-            let own = resources.gathered.first().ok_or_else(|| Error::internal("ghosts without a grid"))?;
-            let grids = [source, own, resources.glare_before_ghosts(bloom)?];
+            let grids = [source, resources.glare_before_ghosts(bloom)?];
             GhostStages::new(device, kernels, made, grids, resources.smooth())
         });
         let ghosts = ghosts.transpose()?;

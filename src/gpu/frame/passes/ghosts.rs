@@ -11,6 +11,9 @@ use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKind;
 use crate::gpu::kernel::stage::Stage;
 
+/// Cells of a workgroup that draws ghosts: bloom/ghosts.wgsl.
+const DRAWN_CELLS: [u32; 2] = [8, 4];
+
 pub struct GhostStages {
     reflect: Stage,
     draw: Stage,
@@ -20,19 +23,18 @@ pub struct GhostStages {
 }
 
 impl GhostStages {
-    /// `source`: the grid whose light is reflected; `own`: the light of the finest grid; `glare`: what that spreads
-    /// without them.
+    /// `source`: the grid whose light is reflected; `glare`: what the finest grid spreads without them.
     pub fn new(
         device: &Device,
         kernels: &Kernels,
         resources: &GhostResources,
-        [source, own, glare]: [&Texture; 3],
+        [source, glare]: [&Texture; 2],
         smooth: wgpu::BindingResource<'_>,
     ) -> Result<Self> {
         let (reflected, drawn) = (|| view(&resources.reflected), || view(&resources.drawn));
         let reflect = [resources.numbers(), view(source), reflected()];
         let draw = [resources.numbers(), reflected(), drawn()];
-        let add = [resources.numbers(), view(glare), drawn(), smooth, view(own), view(&resources.sum)];
+        let add = [resources.numbers(), view(glare), drawn(), smooth, view(&resources.sum)];
         Ok(Self {
             reflect: kernels.get(KernelKind::ReflectLight)?.stage(device, &[&reflect])?,
             draw: kernels.get(KernelKind::DrawGhosts)?.stage(device, &[&draw])?,
@@ -45,7 +47,7 @@ impl GhostStages {
     pub fn draw(&self, pass: &mut wgpu::ComputePass<'_>) {
         let [source, drawn, finest] = self.sizes;
         self.reflect.dispatch(pass, 0, source);
-        self.draw.dispatch(pass, 0, drawn);
+        self.draw.run(pass, Some(0), [0, 1].map(|side| drawn[side].div_ceil(DRAWN_CELLS[side])));
         self.add.dispatch(pass, 0, finest);
     }
 }

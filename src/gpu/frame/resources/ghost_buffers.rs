@@ -15,13 +15,13 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
     let ghost = layout!(Ghost as "Ghost": shares, apothems, magnification, softness, reach, reserved);
     let numbers = layout!(GhostNumbers as "GhostNumbers": ghosts, normals, tail_x = tails + 0, tail_y = tails + 16,
-        middle, target_cells, source_cells, step, count, blades, fine, above, share);
+        middle, target_cells, source_cells, step, count, fine, above, reserved);
     [ghost, numbers]
 }
 
 pub struct GhostResources {
     numbers: CachedUniform,
-    /// The light that is reflected.
+    /// The light that reaches ghosts.
     pub reflected: Texture,
     /// The light of all ghosts.
     pub drawn: Texture,
