@@ -85,6 +85,7 @@ missing_packages_of_all() {
     missing nodejs node
     missing npm npm
     missing golang-go go gofmt
+    missing gcc-arm-linux-gnueabihf arm-linux-gnueabihf-gcc
     missing_packages_of_windows
     missing_packages_of_aarch64 vulkan
     missing openmpi-bin mpirun
