@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The files besides src/platform, by their paths below src/.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     // These choose a file for a module: what a crate has on some systems only, or its stand-in.
     "cpu/mod.rs",
     "gpu/device/mod.rs",
@@ -15,8 +15,9 @@ const FILES: [&str; 9] = [
     "window/mod.rs",
     // Types of wgpu's that are there on some systems only.
     "gpu/device/interfaces.rs",
-    // A file that only pages have.
+    // Rooms that only pages have.
     "gpu/mod.rs",
+    "lib.rs",
     // Tests of what one system or processor has.
     "gpu/device/driver_lock.rs",
     "image/file/tests.rs",
