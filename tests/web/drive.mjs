@@ -25,7 +25,8 @@ const roots = { bhr: pack, scratch, page: here };
 const server = createServer((request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname)).slice(1);
     const [first, ...rest] = path.split("/");
-    const file = roots[first] && rest.length ? join(roots[first], ...rest) : join(here, path);
+    const place = roots[first] && rest.length ? join(roots[first], ...rest) : join(here, path);
+    const file = path === "sample.html" ? join(scratch, path) : place;
     if (!existsSync(file) || !extname(file)) {
         response.writeHead(404).end();
         return;
@@ -106,8 +107,8 @@ async function rendered(name, text, [width, height], backend, tile) {
     const environment = { ...process.env, VK_DRIVER_FILES: manifest, VK_ICD_FILENAMES: manifest };
     const [fullWidth, fullHeight, ...place] = tile ?? [width, height];
     const part = tile === undefined ? [] : ["--tile", [...place, width, height].join(",")];
-    const options = ["render", scene, "--size", `${fullWidth}x${fullHeight}`, ...part, "--backend", backend, "--progress", "none",
-        "--again", "--out", picture];
+    const options = ["render", scene, "--size", `${fullWidth}x${fullHeight}`, ...part, "--backend", backend,
+        "--progress", "none", "--again", "--out", picture];
     await run(program, options, { env: environment });
 }
 
@@ -355,6 +356,42 @@ await test("set lays objects over one another, and undefined takes back", async 
     });
     const expected = [{ camera: { fov_y: 1, jitter: [0.1, 0.2] } }, "v=1&camera.fov_y=1&camera.jitter=0.1,0.2"];
     holds(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
+});
+
+await test("the page in docs/web.md shows a hole, and turns it where it is dragged", async () => {
+    const [, sample] = /```html\n(.*?)```/s.exec(readFileSync(join(here, "../../docs/web.md"), "utf8"));
+    // Fewer pixels are enough.
+    const small = sample.replace('width="960" height="540"', 'width="96" height="54"');
+    holds(small !== sample, "the sample's canvas has another size");
+    writeFileSync(join(scratch, "sample.html"), small);
+    const other = await browser.newPage({ viewport: { width: 192, height: 120 } });
+    const wrong = [];
+    other.on("pageerror", (error) => wrong.push(String(error)));
+    await other.goto(address.replace("page.html", "sample.html"));
+    const seen = async () => {
+        await other.locator("canvas").screenshot({ path: join(scratch, "sample.png") });
+        return bytesOf(await page.evaluate(async () => base64((await decoded("/scratch/sample.png")).data)));
+    };
+    /** The picture, once it is as it should be. */
+    const until = async (is) => {
+        for (let last; ;) {
+            last = await seen();
+            if (is(last) || wrong.length > 0) {
+                return last;
+            }
+            await new Promise((done) => setTimeout(done, 300));
+        }
+    };
+    const first = await until((pixels) => new Set(pixels).size > 20);
+    await other.mouse.move(60, 60);
+    await other.mouse.down();
+    await other.mouse.move(150, 40);
+    await other.mouse.up();
+    await until((pixels) => difference(pixels, first).over > 100);
+    holds(wrong.length === 0, wrong.join("\n"));
+    const { hash } = new URL(other.url());
+    holds(/^#v=1&hole\.spin=0\.9&camera\.orbit\.distance=26&/.test(hash), hash);
+    await other.close();
 });
 
 await test("nothing was said in the console", async () => holds(said.length === 0, said.join("\n")));
