@@ -6,6 +6,13 @@ use std::path::{Path, PathBuf};
 
 fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=build.rs");
+    // Where there is Vulkan, by which hosts share memory: not on Apple's systems, and not in pages. Elsewhere files
+    // with stand-ins take the places of those that are about it.
+    println!("cargo:rustc-check-cfg=cfg(shares_memory)");
+    let target = |key: &str| std::env::var(format!("CARGO_CFG_TARGET_{key}")).unwrap_or_default();
+    if target("VENDOR") != "apple" && target("ARCH") != "wasm32" {
+        println!("cargo:rustc-cfg=shares_memory");
+    }
     if matches!(std::env::var("CARGO_CFG_TARGET_OS").as_deref(), Ok("linux" | "android" | "freebsd")) {
         // Drivers leave handlers that run at thread exit; unmapping the library under them would crash the host.
         println!("cargo:rustc-cdylib-link-arg=-Wl,-z,nodelete");
@@ -55,12 +62,22 @@ fn list_shaders() -> io::Result<()> {
             let Some(file) = file.strip_suffix(".wgsl").filter(|_| path.is_file()) else {
                 return Err(io::Error::other(format!("{} is no file of WGSL", path.display())));
             };
-            let text = format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/shaders/{room}/{file}.wgsl\"))");
+            let text = if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32") {
+                format!("{:?}", without_comments(&std::fs::read_to_string(&path)?))
+            } else {
+                format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/shaders/{room}/{file}.wgsl\"))")
+            };
             list.push(format!("(\"{room}/{file}\", {text}),\n"));
         }
     }
     list.sort();
     std::fs::write(variable("OUT_DIR")?.join("shaders.rs"), format!("&[\n{}]\n", list.concat()))
+}
+
+/// WGSL, which has no strings, without comments and indents: a third less for a page to load.
+fn without_comments(text: &str) -> String {
+    let bare = text.lines().map(|line| line.split("//").next().unwrap_or_default().trim());
+    bare.filter(|line| !line.is_empty()).map(|line| format!("{line}\n")).collect()
 }
 
 /// Names and paths of what a folder holds, but for hidden files, which editors and desktops leave.

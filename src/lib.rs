@@ -2,6 +2,7 @@
 //! bhr, the embeddable black-hole renderer. The map of the crate, from left to right as a frame flows:
 //!
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
+//! - `web`: the boundary to a page's scripts, in builds for WebAssembly.
 //! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background. [`surface`]:
 //!   its frames in the host's windows. [`interop`]: pictures and semaphores on the GPU that hosts share.
 //! - `tracers`: the tracers behind one face. `cpu`, `gpu`: the two of them, with one behaviour: scene -> pixels.
@@ -44,6 +45,8 @@ mod thread_scope;
 mod thread_state;
 pub mod tracer;
 mod tracers;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 pub mod window;
 
 #[doc(hidden)]

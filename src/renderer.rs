@@ -9,8 +9,7 @@ mod presets;
 
 use crate::accumulation::Accumulation;
 use crate::attempt;
-use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
-use crate::film::bloom::Bloom;
+use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::interop::{Semaphore, Target};
@@ -326,44 +325,6 @@ impl Renderer {
         self.stats.last()
     }
 
-    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a spin beyond those of
-    /// frames; a region with bloom or a beam, or with a film that measures the frame; a format that does not go with
-    /// the view.
-    fn request(
-        &self,
-        format: PixelFormat,
-        [width, height]: [u32; 2],
-        transparent: bool,
-        region: Option<Region>,
-    ) -> Result<FrameRequest> {
-        let (set, strips) = (region.is_some(), self.scene.camera.is_omnistereo());
-        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
-        region.check_image(width, height)?;
-        self.scene.hole.check_shown("a frame")?;
-        let spreads = Bloom::is_shown(&self.scene.film, self.scene.view, format);
-        let in_the_way = self.scene.film.needs_whole_frame().filter(|_| spreads && (set || strips));
-        if let Some((name, light, value)) = in_the_way {
-            return Err(Error::state(format!(
-                "film {name} is {}: {light} comes from the whole frame, and {} is set; set no {}, or {name} 0",
-                Number(value),
-                if set { "a region" } else { "an eye" },
-                if set { "region" } else { "eye" }
-            )));
-        }
-        match (self.scene.view, format) {
-            (View::Light, PixelFormat::R32F) => {
-                return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
-            }
-            (View::Light, _) | (_, PixelFormat::R32F) => {}
-            (view, format) if !format.is_developed() || format.is_hdr() => {
-                let view = view.name();
-                return Err(Error::argument(format!("view {view} goes into 8-bit formats or R32F, not {format}")));
-            }
-            _ => {}
-        }
-        Ok(FrameRequest { width, height, region, format, transparent })
-    }
-
     /// A GPU's frames come out of its staging memory faster than one thread writes them; the CPU tracer's are what its
     /// threads wait for.
     fn help_to_write(&self, target: &mut ImageMut<'_>) {
@@ -386,7 +347,13 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let start = Instant::now();
-        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
+        let request = FrameRequest::checked(
+            &self.scene,
+            target.format(),
+            [target.width(), target.height()],
+            transparent,
+            region,
+        )?;
         self.help_to_write(target);
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
@@ -429,7 +396,7 @@ impl Renderer {
             let view = self.scene.view.name();
             return Err(Error::argument(format!("view is {view}; light is what is accumulated: set view LIGHT")));
         }
-        let request = self.request(PixelFormat::Rgba32F, begun.size, begun.transparent, None)?;
+        let request = FrameRequest::checked(&self.scene, PixelFormat::Rgba32F, begun.size, begun.transparent, None)?;
         // The frames are put back whatever happens.
         let mut begun = self.accumulation.take().ok_or_else(not_accumulating)?;
         let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| begun.take(tile, pixels, row_bytes);
@@ -473,7 +440,7 @@ impl Renderer {
         region: Option<Region>,
         progress: &mut Progress<'_>,
     ) -> Result<()> {
-        let request = self.request(format, size, transparent, region)?;
+        let request = FrameRequest::checked(&self.scene, format, size, transparent, region)?;
         let shown = format == PixelFormat::Rgba8Srgb && !transparent && !self.scene.camera.is_omnistereo();
         let window = shown.then(|| frame_request(&self.scene, size, format));
         let scene = self.behind(&request.region, size)?;
@@ -510,7 +477,13 @@ impl Renderer {
         transparent: bool,
         region: Option<Region>,
     ) -> Result<Job> {
-        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
+        let request = FrameRequest::checked(
+            &self.scene,
+            target.format(),
+            [target.width(), target.height()],
+            transparent,
+            region,
+        )?;
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);

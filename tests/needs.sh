@@ -82,9 +82,8 @@ missing_packages_of_aarch64() {
 # The Debian packages of missing programs that only tests/run all needs.
 missing_packages_of_all() {
     missing clang clang++
-    missing nodejs node
-    missing npm npm
     missing golang-go go gofmt
+    missing gcc-arm-linux-gnueabihf arm-linux-gnueabihf-gcc
     missing_packages_of_windows
     missing_packages_of_aarch64 vulkan
     missing openmpi-bin mpirun
@@ -113,6 +112,9 @@ missing_packages() {
     missing doxygen doxygen
     missing ffmpeg ffmpeg ffprobe
     missing procps pkill pgrep
+    missing chromium chromium
+    missing nodejs node
+    missing npm npm
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }

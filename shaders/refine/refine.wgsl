@@ -100,14 +100,18 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     @builtin(local_invocation_index) i: u32) {
     unknown_zero = group.z;
     lane = i;
-    list = select(select(LIST_CURVE, LIST_DISK, group.y == 1u), LIST_RAGGED, groups.y == 1u);
-    samples = not_inlined(select(pass_.curve_samples, EDGE_SAMPLES, list == LIST_DISK));
+    // Browsers want every thread of a workgroup to meet its barriers, and see it in values of the whole workgroup only,
+    // not in variables of a thread.
+    let groups_list = select(select(LIST_CURVE, LIST_DISK, group.y == 1u), LIST_RAGGED, groups.y == 1u);
+    let samples_each = select(pass_.curve_samples, EDGE_SAMPLES, groups_list == LIST_DISK);
+    list = groups_list;
+    samples = not_inlined(samples_each);
     whole_plane = true;
     if i == 0u {
         listed = listed_pixels(list);
     }
     let ends = workgroupUniformLoad(&listed);
-    let pixels = LANES / samples;
+    let pixels = LANES / samples_each;
     for (var first = ends.x + group.x * pixels; first < ends.y; first += groups.x * pixels) {
         refine_sample(first + i / samples, ends.y);
     }

@@ -33,7 +33,7 @@ fn pack_light(light: vec3<f32>) -> u32 {
     let first = u32(top * bitcast<f32>((151u - exponent) << 23u) + 0.5);
     exponent = select(exponent, exponent + 1u, first > 511u);
     let mantissas = min(vec3<u32>(rgb * bitcast<f32>((151u - exponent) << 23u) + 0.5), vec3<u32>(511u));
-    return mantissas.x | mantissas.y << 9u | mantissas.z << 18u | exponent << 27u;
+    return mantissas.x | (mantissas.y << 9u) | (mantissas.z << 18u) | (exponent << 27u);
 }
 
 // The light in the lower 16 bits, a half float. NaN and negative light are 0, infinite light is more than can be

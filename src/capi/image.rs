@@ -5,7 +5,7 @@
 use super::entry::anywhere;
 use super::pointer::{check_flags, check_reserved, is_null, unknown};
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, POINTER, Versioned};
+use super::versioned::{self, OutStruct, Versioned, pointers_before_u64};
 use crate::error::{Error, Result};
 use crate::image::{self, Alpha, ColourSpace, ImageMut, Layout, Loaded, PixelFormat};
 use crate::platform::path_of_bytes;
@@ -107,10 +107,10 @@ pub struct BhrImage {
     pub reserved2: u32,
 }
 
-// SAFETY: repr(C), size first, no padding, integers and a nullable pointer.
+// SAFETY: repr(C), size first, no padding but behind the pointer, integers and a nullable pointer.
 unsafe impl Versioned for BhrImage {
     const NAME: &'static str = "BhrImage";
-    const SIZES: &'static [usize] = &[40 + POINTER, 48 + POINTER];
+    const SIZES: &'static [usize] = &[40 + pointers_before_u64(1), 48 + pointers_before_u64(1)];
     fn defaults() -> Self {
         Self { format: BHR_FORMAT_RGBA8_SRGB, ..Self::empty() }
     }

@@ -14,7 +14,8 @@ const MAX_SIZE: usize = 16 * 1024;
 /// A struct of the header that begins with `uint32_t struct_size`.
 ///
 /// # Safety
-/// `repr(C)`, its first field is `struct_size: u32`, it has no padding, and every bit pattern is a value of it.
+/// `repr(C)`, its first field is `struct_size: u32`, it has no padding but that of [`pointers_before_u64`], and every
+/// bit pattern is a value of it.
 pub(super) unsafe trait Versioned: Copy {
     /// The struct's name in the header.
     const NAME: &'static str;
@@ -33,6 +34,12 @@ pub(super) unsafe trait Versioned: Copy {
 
 /// Bytes of a pointer in a struct: the part of [`Versioned::SIZES`] that is not the same on every platform.
 pub(super) const POINTER: usize = size_of::<*const ()>();
+
+/// Bytes of so many pointers before a number of 64 bits, which begins where it is aligned: pointers of 32 bits may have
+/// padding behind them.
+pub(super) const fn pointers_before_u64(count: usize) -> usize {
+    (count * POINTER).next_multiple_of(align_of::<u64>())
+}
 
 /// The size of the first release, with `SIZES` checked: a struct that has grown without a new entry there, or has
 /// shrunk, does not compile.

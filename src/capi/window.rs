@@ -5,7 +5,7 @@
 use super::entry::anywhere;
 use super::pointer::{check_reserved, unknown};
 use super::status::BhrStatus;
-use super::versioned::{self, POINTER, Versioned};
+use super::versioned::{self, Versioned, pointers_before_u64};
 use crate::error::{Error, Result};
 use crate::window::NativeWindow;
 use std::ffi::c_void;
@@ -72,10 +72,10 @@ pub struct BhrWindow {
     pub reserved: u32,
 }
 
-// SAFETY: repr(C), size first, no padding, integers and nullable pointers.
+// SAFETY: repr(C), size first, no padding but behind the pointers, integers and nullable pointers.
 unsafe impl Versioned for BhrWindow {
     const NAME: &'static str = "BhrWindow";
-    const SIZES: &'static [usize] = &[32 + 3 * POINTER];
+    const SIZES: &'static [usize] = &[32 + pointers_before_u64(3)];
     fn defaults() -> Self {
         Self {
             struct_size: 0,

@@ -3,6 +3,7 @@
 //! every pixel gets a little of every other's. Knows neither how light is made nor host memory.
 
 use super::frame::Frame;
+use super::pool::Pool;
 use crate::allocate::{collected, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
@@ -28,7 +29,7 @@ pub struct Exposure {
 
 /// A frame on its way to the sink.
 pub struct Delivery<'a, 'b, 'c> {
-    pool: &'a rayon::ThreadPool,
+    pool: &'a Pool,
     frame: &'a Frame<'a>,
     sink: &'a mut TileSink<'b>,
     progress: &'a mut Progress<'c>,
@@ -43,7 +44,7 @@ pub struct Delivery<'a, 'b, 'c> {
 
 impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
     pub fn new(
-        pool: &'a rayon::ThreadPool,
+        pool: &'a Pool,
         frame: &'a Frame<'a>,
         sink: &'a mut TileSink<'b>,
         progress: &'a mut Progress<'c>,

@@ -2,6 +2,8 @@
 //! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the
 //! GPU tracer is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
+#[cfg_attr(target_arch = "wasm32", path = "pool_absent.rs")]
+mod pool;
 mod rays;
 mod record;
 pub(crate) mod shade;
@@ -15,12 +17,12 @@ mod delivery;
 mod render;
 mod outputs;
 
-use crate::allocate::{self, THREAD_ROOM};
-use crate::error::{Error, ErrorKind, Result};
+use crate::allocate;
+use crate::error::{Error, Result};
 use crate::scene::{Hit, Ray, Scene, Transfer};
 use crate::sky::StarIndex;
-use crate::thread_state::begin_own_thread;
 use crate::tracer::{AdapterInfo, Backend};
+use pool::Pool;
 use std::sync::Arc;
 use tables::LensCache;
 
@@ -29,7 +31,7 @@ pub const MAX_THREADS: u32 = 1024;
 
 pub struct CpuTracer {
     adapter: AdapterInfo,
-    pool: rayon::ThreadPool,
+    pool: Pool,
     lenses: Box<LensCache>,
     /// Lens tables for frames of outputs, which need more of each ray.
     output_lenses: Box<LensCache>,
@@ -63,18 +65,9 @@ impl CpuTracer {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()).min(MAX_THREADS as usize),
             n => n as usize,
         };
-        allocate::check_room(count * THREAD_ROOM, "the threads of the CPU tracer")?;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(count)
-            .thread_name(|i| format!("bhr-cpu-{i}"))
-            .start_handler(|_| begin_own_thread())
-            .build()
-            .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
-        // Once all of them run, they have what threads take at their start, which is not ours to refuse.
-        pool.broadcast(|_| ());
         Ok(Self {
             adapter: adapter_info(),
-            pool,
+            pool: Pool::new(count)?,
             lenses: Box::default(),
             output_lenses: Box::default(),
             stars: None,

@@ -5,6 +5,7 @@
 use super::CpuTracer;
 use super::delivery::Delivery;
 use super::frame::Frame;
+use super::pool::Pool;
 use crate::allocate::{self, collected, filled};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
@@ -12,7 +13,6 @@ use crate::film::metering::MeterParams;
 use crate::scene::Scene;
 use crate::scene::record::Record;
 use crate::tracer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
-use rayon::ThreadPool;
 
 /// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for
 /// prompt progress, large enough to keep every core busy.
@@ -60,7 +60,7 @@ impl CpuTracer {
         &mut self,
         scene: &Scene,
         request: &FrameRequest,
-        work: impl FnOnce(&ThreadPool, &Frame<'_>) -> Result<T>,
+        work: impl FnOnce(&Pool, &Frame<'_>) -> Result<T>,
     ) -> Result<T> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();

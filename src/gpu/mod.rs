@@ -9,6 +9,8 @@ mod lens;
 mod window;
 mod frame;
 mod gl_tracer;
+#[cfg(target_arch = "wasm32")]
+mod page;
 #[cfg(test)]
 mod layouts;
 #[cfg(test)]
@@ -48,6 +50,8 @@ pub use kernel::fragments::join_wgsl;
 pub use kernel::kernels::KernelWaits;
 #[doc(hidden)]
 pub use kernel::wgsl::shader_sources;
+#[cfg(target_arch = "wasm32")]
+pub use page::{Canvas, CanvasTexture};
 #[doc(hidden)]
 pub use window::present::Presenter;
 pub use window::swapchain::{Acquired, Swapchain};

@@ -7,8 +7,23 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+// ---- time ----
+
+/// A clock that only goes forward.
+pub use std::time::Instant;
+
+/// Waits at most so long for what comes. Errors: it has not come, or never will.
+pub fn receive_within<T>(from: &Receiver<T>, time: Duration) -> Result<T, RecvTimeoutError> {
+    from.recv_timeout(time)
+}
 
 // ---- the process ----
+
+/// The number of the process, another one in each.
+pub use std::process::id as process_id;
 
 /// Keeps the library in the process for good: threads of its own and of drivers run on in it. ELF's linker flag
 /// `nodelete` (build.rs) does that without a call.

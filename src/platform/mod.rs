@@ -7,21 +7,25 @@
 //! all; a system's own file puts what it does better in its place.
 
 #![cfg_attr(
-    target_vendor = "apple",
+    not(shares_memory),
     allow(dead_code, unused_imports, reason = "no driver there passes anything by a descriptor")
 )]
 
 #[allow(dead_code, reason = "systems have most of it themselves")]
 mod bare;
 mod control_words;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod system;
 #[cfg(unix)]
 mod unix;
 #[cfg(windows)]
 mod windows;
 
-#[cfg(not(any(unix, windows)))]
+#[cfg(not(any(unix, windows, target_arch = "wasm32")))]
 use bare as here;
+#[cfg(target_arch = "wasm32")]
+use page as here;
 #[cfg(unix)]
 use unix as here;
 #[cfg(windows)]
@@ -30,9 +34,9 @@ use windows as here;
 pub use bare::{DescriptorFacts, FileForm, NoCopy, NotFound};
 pub use control_words::ControlWords;
 pub use here::{
-    Uncancelled, around_thread_end, at_exit, block_file_size_signal, can_be_mapped, close_descriptor, close_file,
-    copy_descriptor, descriptor_facts, folders_of_libraries, is_same_file, keep_mode, library_function, lower_priority,
-    may_follow_link, never_wider, on_enough_stack, on_host_stack, open_without_waiting, other_threads_are_gone,
-    path_of_bytes, stack_left, stay_mapped, sync_folder,
+    Instant, Uncancelled, around_thread_end, at_exit, block_file_size_signal, can_be_mapped, close_descriptor,
+    close_file, copy_descriptor, descriptor_facts, folders_of_libraries, is_same_file, keep_mode, library_function,
+    lower_priority, may_follow_link, never_wider, on_enough_stack, on_host_stack, open_without_waiting,
+    other_threads_are_gone, path_of_bytes, process_id, receive_within, stack_left, stay_mapped, sync_folder,
 };
 pub use system::{SYSTEM, System};

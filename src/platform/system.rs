@@ -13,6 +13,8 @@ pub enum System {
     /// Apple's others.
     Apple,
     Android,
+    /// A web page.
+    Page,
     Other,
 }
 
@@ -29,6 +31,8 @@ pub const SYSTEM: System = if cfg!(target_os = "android") {
     System::FreeDesktop
 } else if cfg!(windows) {
     System::Windows
+} else if cfg!(target_arch = "wasm32") {
+    System::Page
 } else {
     System::Other
 };

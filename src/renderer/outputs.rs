@@ -8,7 +8,7 @@ use crate::error::{Error, PARTLY_WRITTEN, Result};
 use crate::image::{Attribute, ColourSpace, Effort, Layer, PixelFormat, save_layers};
 use crate::job::{Job, JobTarget, OutputFrame, OutputTarget};
 use crate::scene::{MOST_OUTPUTS, Made, Output, Region, Scene};
-use crate::tracer::{AdapterInfo, Progress};
+use crate::tracer::{AdapterInfo, FrameRequest, Progress};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -51,7 +51,13 @@ impl Renderer {
                 self.scene.check_one_eye("an output beside the light")?;
             }
             if *output == Output::Light {
-                self.request(target.format(), [target.width(), target.height()], *transparent, region)?;
+                FrameRequest::checked(
+                    &self.scene,
+                    target.format(),
+                    [target.width(), target.height()],
+                    *transparent,
+                    region,
+                )?;
             }
             self.help_to_write(target);
         }

@@ -150,7 +150,7 @@ impl Renderer {
         self.check_is_not_read(target, &on_device)?;
         let light = Some(SharedPlace::Target(on_device));
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
-        let request = self.request(shape.format, shape.size, target.transparent, region)?;
+        let request = FrameRequest::checked(&self.scene, shape.format, shape.size, target.transparent, region)?;
         self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), images: Vec::new(), sync }, submits)
     }
 
@@ -290,7 +290,7 @@ impl Renderer {
                     )));
                 }
                 Output::Light => {
-                    request = Some(self.request(given, size, transparent, region)?);
+                    request = Some(FrameRequest::checked(&self.scene, given, size, transparent, region)?);
                     light = Some(place);
                 }
                 Output::View(view) => {

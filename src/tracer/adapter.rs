@@ -11,6 +11,8 @@ pub enum Backend {
     Metal = 3,
     D3d12 = 4,
     Gl = 5,
+    /// A page's, which hosts in C have not.
+    WebGpu = 6,
 }
 
 /// The part of the C constant's name after `BHR_BACKEND_`.
@@ -22,6 +24,7 @@ impl std::fmt::Display for Backend {
             Self::Metal => "METAL",
             Self::D3d12 => "D3D12",
             Self::Gl => "GL",
+            Self::WebGpu => "WEBGPU",
         })
     }
 }

@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// One target for each platform: which crates are linked does not depend on the processor.
-const PLATFORMS: [&str; 6] = [
+const PLATFORMS: [&str; 7] = [
     "x86_64-unknown-linux-gnu",
     "x86_64-unknown-freebsd",
     "x86_64-pc-windows-msvc",
     "aarch64-apple-darwin",
     "aarch64-apple-ios",
     "aarch64-linux-android",
+    "wasm32-unknown-unknown",
 ];
 
 /// Licences, as crates state them, that let a library of MIT or Apache-2.0 contain their work, for its notice alone.

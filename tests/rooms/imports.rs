@@ -9,7 +9,7 @@ use crate::modules::{Crate, Module, sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// From the lowest to the highest; rooms of one line do not import each other.
-const ROOMS: [&[&str]; 15] = [
+const ROOMS: [&[&str]; 16] = [
     &["error", "platform"],
     &["allocate", "attempt", "deferred", "random", "recent", "thread_scope", "thread_state"],
     &["physics"],
@@ -24,6 +24,7 @@ const ROOMS: [&[&str]; 15] = [
     &["accumulation", "job", "surface"],
     &["renderer"],
     &["capi"],
+    &["web"],
     &["lib"],
 ];
 

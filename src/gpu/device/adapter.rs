@@ -45,9 +45,9 @@ impl Adapter {
         self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
     }
 
-    /// An adapter of a host's instance, which no list keeps. Errors: UNSUPPORTED with the reason when it cannot run the
-    /// tracer.
-    #[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "hosts' devices are Vulkan's"))]
+    /// An adapter of an instance of its own, a host's or a page's, which no list keeps. Errors: UNSUPPORTED with the
+    /// reason when it cannot run the tracer.
+    #[cfg_attr(not(shares_memory), allow(dead_code, reason = "hosts' devices are Vulkan's"))]
     pub(in crate::gpu) fn of_host(
         raw: wgpu::Adapter,
         instance: wgpu::Instance,
@@ -155,7 +155,8 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
             list if list.iter().any(|found| is_enough(&found.rank)) => list,
             list => [list, gl_hardware()].into_iter().flatten().collect(),
         },
-        Search::Only(Backend::Cpu) => Vec::new(),
+        // A page asks for its adapter, and awaits the answer (src/gpu/page.rs).
+        Search::Only(Backend::Cpu | Backend::WebGpu) => Vec::new(),
         Search::Only(Backend::Gl) => gl().unwrap_or_default(),
         Search::Only(Backend::Vulkan) => of(wgpu::Backends::VULKAN, false),
         Search::Only(Backend::Metal) => of(wgpu::Backends::METAL, false),
@@ -189,6 +190,7 @@ pub fn absence(backend: Backend) -> &'static str {
         Backend::Gl => "no OpenGL ES 3.1 with compute shaders",
         Backend::Metal if !SYSTEM.is_apples() => "Metal is there on macOS and iOS only",
         Backend::D3d12 if SYSTEM != System::Windows => "Direct3D 12 is there on Windows only",
+        Backend::WebGpu => "WebGPU is there in pages only",
         Backend::Metal | Backend::D3d12 | Backend::Cpu => "the system lists no device",
     }
 }
@@ -399,7 +401,8 @@ fn backend(of: wgpu::Backend) -> Option<Backend> {
         wgpu::Backend::Metal => Some(Backend::Metal),
         wgpu::Backend::Dx12 => Some(Backend::D3d12),
         wgpu::Backend::Gl => Some(Backend::Gl),
-        wgpu::Backend::Noop | wgpu::Backend::BrowserWebGpu => None,
+        wgpu::Backend::BrowserWebGpu => Some(Backend::WebGpu),
+        wgpu::Backend::Noop => None,
     }
 }
 

@@ -126,7 +126,7 @@ pub struct Requirements {
 }
 
 /// The host's device, checked.
-#[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "hosts' devices are Vulkan's"))]
+#[cfg_attr(not(shares_memory), expect(dead_code, reason = "hosts' devices are Vulkan's"))]
 pub(in crate::gpu) struct HostDevice {
     pub(in crate::gpu) device: u64,
     pub(in crate::gpu) queue_family: u32,

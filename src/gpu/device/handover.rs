@@ -11,6 +11,7 @@ use super::vulkan::semaphore::{stage, unstage};
 use super::wgpu_device::{Device, Uploads};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
+use crate::platform::Instant;
 use std::sync::Arc;
 
 /// Waiting goes in pieces of this, between which the device may be lost.
@@ -216,13 +217,13 @@ impl Device {
             return Ok(());
         }
         self.let_go_of_done();
-        let deadline = std::time::Instant::now() + super::wgpu_device::hangs_after();
+        let deadline = Instant::now() + super::wgpu_device::hangs_after();
         let open = self.turns.in_use().iter().flat_map(|one| one.waits.clone()).collect::<Vec<_>>();
         for SemaphoreUse { semaphore, value } in open {
             let Some(value) = value else { continue };
             while !semaphore.wait(value, WAIT_SLICE)? {
                 self.check()?;
-                if std::time::Instant::now() >= deadline {
+                if Instant::now() >= deadline {
                     self.lose_hung();
                 }
             }

@@ -13,9 +13,9 @@ pub(in crate::gpu) fn while_it_exists<T>(
     work: impl FnOnce() -> T,
 ) -> Option<T> {
     match backend {
-        #[cfg(not(target_vendor = "apple"))]
+        #[cfg(shares_memory)]
         Backend::Vulkan => held::<wgpu::hal::api::Vulkan, _>(buffer, work),
-        #[cfg(all(feature = "gl", not(target_vendor = "apple")))]
+        #[cfg(all(feature = "gl", shares_memory))]
         Backend::Gl => held::<wgpu::hal::api::Gles, _>(buffer, work),
         #[cfg(target_vendor = "apple")]
         Backend::Metal => held::<wgpu::hal::api::Metal, _>(buffer, work),

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Compute pipelines from WGSL. Knows no shader.
 
-use super::specialise::Parsed;
 use super::wgpu_device::Device;
-use crate::deferred::hold;
 use crate::error::Result;
-use std::borrow::Cow;
-use std::sync::{Arc, PoisonError};
-use std::time::Instant;
+use crate::platform::Instant;
 
 /// The reason why the loops of a shader are finite, which drivers rely on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -56,12 +52,12 @@ impl Device {
     /// tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
         let started = Instant::now();
-        let specialised = self.parsed(kernel)?.specialised(kernel.label, kernel.entry_point, kernel.constants)?;
+        let text = kernel.source.join("\n");
+        let (source, constants) = self.shaders.translated(kernel.label, text, kernel.entry_point, kernel.constants)?;
         let checks = wgpu::ShaderRuntimeChecks {
             force_loop_bounding: kernel.loops == Loops::Counted,
             ..wgpu::ShaderRuntimeChecks::checked()
         };
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(specialised));
         let module = self.scoped_off_thread(kernel.label, |device| {
             let descriptor = wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source };
             // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches
@@ -82,7 +78,7 @@ impl Device {
                 module: &module,
                 entry_point: Some(kernel.entry_point),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &[],
+                    constants,
                     zero_initialize_workgroup_memory: kernel.zero_workgroup_memory,
                 },
                 cache: None,
@@ -96,20 +92,5 @@ impl Device {
             (started.elapsed() - translated).as_millis()
         );
         Ok(pipeline)
-    }
-
-    fn parsed(&self, kernel: &Kernel<'_>) -> Result<Arc<Parsed>> {
-        let source = kernel.source.join("\n");
-        // Messages wait until the shader's place is free.
-        let _holding = hold();
-        let place =
-            self.shaders.lock().unwrap_or_else(PoisonError::into_inner).entry(source.clone()).or_default().clone();
-        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(parsed) = &*place {
-            return Ok(parsed.clone());
-        }
-        let parsed = Arc::new(Parsed::new(kernel.label, &source)?);
-        *place = Some(parsed.clone());
-        Ok(parsed)
     }
 }

@@ -12,11 +12,11 @@
 //! Exit handlers and destructors that the host registered earlier run after those of the drivers. A call into a driver
 //! may crash by then, so on that thread contexts refuse their calls, and what they have of the driver is left as it is.
 
-use crate::platform;
+use crate::platform::{self, Instant};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long the end of the process waits at most for the calls into drivers that have begun: once, however many things
 /// are destroyed.
@@ -181,7 +181,7 @@ pub fn watch() {
     /// Registrations at most: a process has few drivers, but may open many devices.
     const MOST: u32 = 64;
     static COUNT: AtomicU32 = AtomicU32::new(0);
-    PROCESS.get_or_init(std::process::id);
+    PROCESS.get_or_init(platform::process_id);
     if COUNT.fetch_add(1, Ordering::Relaxed) < MOST {
         platform::at_exit(at_exit);
     }
@@ -191,7 +191,7 @@ pub fn watch() {
 static PROCESS: OnceLock<u32> = OnceLock::new();
 
 extern "C" fn at_exit() {
-    let of_this_process = PROCESS.get() == Some(&std::process::id());
+    let of_this_process = PROCESS.get() == Some(&platform::process_id());
     // Several handlers are registered; the first one that runs does it all.
     if of_this_process && ENDING.load(Ordering::SeqCst) == 0 {
         close(longest());

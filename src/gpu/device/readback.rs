@@ -7,6 +7,7 @@ use super::process_end;
 use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::{Error, Result};
+use crate::platform::receive_within;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
@@ -167,7 +168,7 @@ impl PendingReadback {
         device.wait(submission)?;
         let failed = |why: &dyn std::fmt::Display| device.explain(Error::internal(format!("mapping a buffer: {why}")));
         // Another thread's poll may have taken this buffer's callback, and be about to call it.
-        let outcome = self.mapped.as_ref().map(|mapped| mapped.recv_timeout(CALLBACK_AFTER));
+        let outcome = self.mapped.as_ref().map(|mapped| receive_within(mapped, CALLBACK_AFTER));
         match outcome.unwrap_or(Err(mpsc::RecvTimeoutError::Disconnected)) {
             Ok(Ok(())) => {
                 let view = self.staging.buffer()?.get_mapped_range(0..self.size).map_err(|error| failed(&error))?;

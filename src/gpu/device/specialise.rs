@@ -4,9 +4,11 @@
 //! that one never runs: in the kernels of this tracer up to three quarters of the code. Without that code lavapipe
 //! makes a pipeline in a third to a half of the time. Knows no kernel.
 
+use crate::deferred::hold;
 use crate::error::{Error, Result};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::naga::back::pipeline_constants::process_overrides;
 use wgpu::naga::compact::{KeepUnused, compact};
 use wgpu::naga::front::wgsl;
@@ -18,7 +20,39 @@ use wgpu::naga::{
 
 /// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each
 /// has a lock of its own, so that several are read at a time.
-pub(in crate::gpu) type Shaders = Mutex<HashMap<String, Arc<Mutex<Option<Arc<Parsed>>>>>>;
+#[derive(Default)]
+pub(in crate::gpu) struct Shaders(Mutex<HashMap<String, Place>>);
+
+/// The place of a shader, which is empty until it was read.
+type Place = Arc<Mutex<Option<Arc<Parsed>>>>;
+
+impl Shaders {
+    /// A shader for wgpu, and the values of constants that are left to it: none. Errors: INTERNAL as [`Parsed::new`]
+    /// and [`Parsed::specialised`].
+    pub fn translated<'a>(
+        &self,
+        label: &str,
+        source: String,
+        entry_point: &str,
+        constants: &'a [(&'a str, f64)],
+    ) -> Result<(wgpu::ShaderSource<'static>, &'a [(&'a str, f64)])> {
+        let specialised = self.parsed(label, source)?.specialised(label, entry_point, constants)?;
+        Ok((wgpu::ShaderSource::Naga(Cow::Owned(specialised)), &[]))
+    }
+
+    fn parsed(&self, label: &str, source: String) -> Result<Arc<Parsed>> {
+        // Messages wait until the shader's place is free.
+        let _holding = hold();
+        let place = self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(source.clone()).or_default().clone();
+        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(parsed) = &*place {
+            return Ok(parsed.clone());
+        }
+        let parsed = Arc::new(Parsed::new(label, &source)?);
+        *place = Some(parsed.clone());
+        Ok(parsed)
+    }
+}
 
 /// WGSL that was read once, for any values of its constants.
 #[derive(Debug)]

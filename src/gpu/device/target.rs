@@ -20,7 +20,7 @@ pub enum TargetResource {
 }
 
 /// A picture on the device that a host reaches too.
-#[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "nothing is shared with hosts there"))]
+#[cfg_attr(not(shares_memory), expect(dead_code, reason = "nothing is shared with hosts there"))]
 pub struct GpuTarget {
     pub resource: TargetResource,
     pub shape: TargetShape,
@@ -39,7 +39,7 @@ pub struct GpuTarget {
 
 impl GpuTarget {
     /// `bytes`: of its memory, as the device counts them.
-    #[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "nothing is shared with hosts there"))]
+    #[cfg_attr(not(shares_memory), expect(dead_code, reason = "nothing is shared with hosts there"))]
     pub(in crate::gpu) fn new(
         (bytes, bindings): (Counted, Arc<BindGroupCache>),
         resource: TargetResource,
@@ -91,7 +91,7 @@ impl Drop for GpuTarget {
 }
 
 /// A target that a frame reads: an image by way of a buffer of bhr's, a buffer in that way or as it is.
-#[cfg_attr(target_vendor = "apple", expect(dead_code, reason = "nothing is shared with hosts there"))]
+#[cfg_attr(not(shares_memory), expect(dead_code, reason = "nothing is shared with hosts there"))]
 pub struct TargetRead {
     pub target: Arc<GpuTarget>,
     /// The buffer that it is copied into.

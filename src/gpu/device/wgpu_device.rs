@@ -9,15 +9,18 @@ use super::hlsl_compiler::HlslCompiler;
 use super::turns::{HostTurn, QueueTurns};
 use super::vulkan::parts::{self, VulkanParts};
 use super::vulkan_host;
-use super::{driver_lock, process_end};
+use super::{driver_lock, process_end, refusals};
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result, panic_text};
+use crate::platform::Instant;
 use crate::tracer::Backend;
+use std::future::poll_fn;
 use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::task::{Poll, Waker};
+use std::time::Duration;
 
 /// A submission that takes longer than this has hung. Drivers give up after 2 to 10 s; a debugger or a busy software
 /// driver may need more.
@@ -123,6 +126,8 @@ struct Health {
     lost: Mutex<Option<String>>,
     /// The first error that came outside every scope and that no call has returned yet.
     stray: Mutex<Option<Error>>,
+    /// Tasks that await the loss.
+    waiting: Mutex<Vec<Waker>>,
     hung: AtomicBool,
 }
 
@@ -144,14 +149,23 @@ impl Device {
         let refused = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
         };
-        let (raw, queue) = opened.map_err(|panic| refused(&panic_text(&*panic)))?.map_err(|error| refused(&error))?;
+        let opened = opened.map_err(|panic| refused(&panic_text(&*panic)))?.map_err(|error| refused(&error))?;
+        Ok(Self::of(adapter, limits, opened))
+    }
+
+    /// A device that was opened on an adapter, with these limits.
+    pub(in crate::gpu) fn of(
+        adapter: &Adapter,
+        limits: wgpu::Limits,
+        (raw, queue): (wgpu::Device, wgpu::Queue),
+    ) -> Self {
         let health = Arc::new(Health::default());
         let of_errors = health.clone();
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
         let vulkan = VulkanParts::of(&raw).map(Arc::new);
-        Ok(Self {
+        Self {
             vulkan,
             turns: QueueTurns::new(adapter.host().and_then(|host| host.lock.clone())),
             is_hosts: adapter.host().is_some(),
@@ -168,11 +182,11 @@ impl Device {
             bindings: Default::default(),
             uploads: Default::default(),
             faults: Default::default(),
-        })
+        }
     }
 
     /// Tells of the device's loss without asking wgpu for anything.
-    pub(in crate::gpu) fn loss(&self) -> Loss {
+    pub fn loss(&self) -> Loss {
         Loss(self.health.clone())
     }
 
@@ -260,15 +274,9 @@ impl Device {
         self.check_known_loss()
     }
 
-    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all.
-    /// Reaches no driver.
+    /// Whether the device refuses what cannot be.
     fn refuses(&self) -> Result<bool> {
-        let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
-        self.catching_panics(|| {
-            let refusal = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
-            drop(self.raw.create_query_set(&nothing));
-            pollster::block_on(refusal.pop()).is_some()
-        })
+        self.catching_panics(|| refusals::are_told(&self.raw))
     }
 
     /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins
@@ -299,13 +307,7 @@ impl Device {
         driver_lock::guard();
         let _holding = hold();
         let _inside = process_end::enter();
-        let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
-        let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
-        let done = work(&self.raw);
-        // A resource that is missing for want of memory is not valid either: the cause comes first.
-        let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
-        (done, errors.into_iter().rev().flatten().next())
+        refusals::of(&self.raw, work)
     }
 
     /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the
@@ -506,6 +508,18 @@ impl Loss {
         self.0.check()
     }
 
+    /// The error, once the device is lost.
+    pub async fn told(self) -> Error {
+        poll_fn(|context| match self.check() {
+            Err(error) => Poll::Ready(error),
+            Ok(()) => {
+                lock(&self.0.waiting).push(context.waker().clone());
+                Poll::Pending
+            }
+        })
+        .await
+    }
+
     pub(in crate::gpu) fn lose(&self, reason: &str) {
         self.0.lose(reason);
     }
@@ -522,6 +536,9 @@ impl Health {
         let first = lost.is_none();
         lost.get_or_insert_with(|| reason.trim().to_owned());
         drop(lost);
+        for one in std::mem::take(&mut *lock(&self.waiting)) {
+            one.wake();
+        }
         if first {
             log::debug!("GPU device lost: {reason}");
         }

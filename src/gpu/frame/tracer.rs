@@ -34,9 +34,16 @@ impl GpuTracer {
     /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are
     /// being made from now on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
-        let device = Arc::new(Device::open(&adapter)?);
-        // All of a GL device shares one context, which two threads cannot use at once.
-        let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl, adapter.info.software);
+        let device = Device::open(&adapter)?;
+        Self::on(adapter, device)
+    }
+
+    /// On a device that is open. Errors: `NoAdapter` where it makes no pipelines.
+    pub(in crate::gpu) fn on(adapter: Adapter, device: Device) -> Result<Self> {
+        let device = Arc::new(device);
+        // All of a GL device shares one context, which two threads cannot use at once; a page has one thread.
+        let threads = !matches!(adapter.info.backend, Backend::Gl | Backend::WebGpu);
+        let kernels = Kernels::new(device.clone(), threads, adapter.info.software);
         // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a
         // device's first pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by
         // side.

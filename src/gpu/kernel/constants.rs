@@ -37,7 +37,7 @@ macro_rules! wgsl {
         format!("i32 = {}", $value as i32)
     };
     (f32 $value:expr) => {
-        format!("f32 = {:?}", $value as f32)
+        number($value as f32)
     };
     (vec2 $value:expr) => {
         format!("vec2<f32> = vec2<f32>({})", list($value.map(|v| v as f32)))
@@ -59,6 +59,12 @@ macro_rules! wgsl {
 /// Constants by name, kind and value.
 macro_rules! constants {
     ($($name:ident: $kind:ident = $value:expr;)*) => { vec![$((stringify!($name), wgsl!($kind $value))),*] };
+}
+
+/// A number's type and itself, which every compiler reads as this one: the shortest decimal of the largest is above it,
+/// which Chrome's refuses.
+fn number(value: f32) -> String {
+    if value == f32::MAX { "f32 = 0x1.fffffep+127".to_owned() } else { format!("f32 = {value:?}") }
 }
 
 fn list<T: Debug>(values: impl IntoIterator<Item = T>) -> String {

@@ -8,9 +8,9 @@ use super::slots::edge_slots;
 use super::stage::Compiled;
 use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
+use crate::platform::Instant;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// Pipelines that a device keeps, on hardware and on software drivers, where each that has run takes some 6 MiB of
 /// the host's memory.

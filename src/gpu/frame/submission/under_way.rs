@@ -9,8 +9,8 @@ use crate::gpu::device::timer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::frame::resources::staging_layout::{AUTO_STOPS, PIXELS, STEPS, STOPS_BYTES, TICKS};
 use crate::gpu::lens::records::STEP_SUM;
+use crate::platform::Instant;
 use crate::tracer::{FrameStats, Tile, TileSink};
-use std::time::Instant;
 
 /// A submission that has not been read yet.
 pub struct Submission {

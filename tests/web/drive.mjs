@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// drive.mjs -- the npm package in headless Chromium, on its software driver SwiftShader, which runs native bhr as well.
+//
+//     node drive.mjs PACKAGE BHR SCRATCH
+//
+// PACKAGE: the folder that packaging/npm --tree makes; BHR: the program; SCRATCH: a folder for pictures. Prints a line
+// for each test, and "N passed, M failed". Environment: CHROMIUM, the browser; SWIFTSHADER, the manifest of its driver;
+// MODULES, the folder of node_modules that has playwright-core.
+
+import { execFile } from "node:child_process";
+import { createReadStream, existsSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { dirname, extname, join, normalize } from "node:path";
+import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
+
+const [pack, program, scratch] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+const { chromium } = createRequire(join(process.env.MODULES, "x.js"))("playwright-core");
+const json = JSON.parse(readFileSync(join(here, "../../include/bhr.json"), "utf8"));
+
+const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
+const roots = { bhr: pack, scratch, page: here };
+const server = createServer((request, response) => {
+    const path = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname)).slice(1);
+    const [first, ...rest] = path.split("/");
+    const place = roots[first] && rest.length ? join(roots[first], ...rest) : join(here, path);
+    const file = path === "sample.html" ? join(scratch, path) : place;
+    if (!existsSync(file) || !extname(file)) {
+        response.writeHead(404).end();
+        return;
+    }
+    response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" });
+    createReadStream(file).pipe(response);
+});
+await new Promise((done) => server.listen(0, "127.0.0.1", done));
+const address = `http://127.0.0.1:${server.address().port}/page.html`;
+
+const flags = ["--no-sandbox", "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--use-angle=vulkan",
+    "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--force-color-profile=srgb"];
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, headless: true, args: flags });
+
+let [passed, failed] = [0, 0];
+async function test(name, work) {
+    const begin = Date.now();
+    let why, timer;
+    const late = new Promise((_, reject) => {
+        timer = setTimeout(() => reject(new Error("it takes longer than two minutes")), 120000);
+    });
+    try {
+        await Promise.race([work(), late]);
+    } catch (error) {
+        why = String(error.stack ?? error);
+    }
+    clearTimeout(timer);
+    why === undefined ? passed++ : failed++;
+    console.log(`${why === undefined ? "ok  " : "FAIL"}  ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
+    if (why !== undefined) {
+        console.log(why.replace(/^/gm, "      "));
+    }
+}
+
+function holds(is, what) {
+    if (!is) {
+        throw new Error(what);
+    }
+}
+
+/** A new page with the package, and what its console said that nobody expected. */
+async function opened() {
+    const page = await browser.newPage({ viewport: { width: 400, height: 300 } });
+    const said = [];
+    page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
+    page.on("pageerror", (error) => said.push(String(error)));
+    page.setDefaultTimeout(300000);
+    await page.goto(address);
+    await page.waitForFunction(() => window.ready === true);
+    return { page, said };
+}
+
+const bytesOf = (text) => new Uint8Array(Buffer.from(text, "base64"));
+
+/** How many pixels differ, and by how much at most. */
+function difference(one, other) {
+    holds(one.length === other.length && one.length > 0, `sizes differ: ${one.length} and ${other.length} bytes`);
+    let [most, over] = [0, 0];
+    for (let i = 0; i < one.length; i += 4) {
+        const by = Math.max(...[0, 1, 2, 3].map((c) => Math.abs(one[i + c] - other[i + c])));
+        most = Math.max(most, by);
+        over += by > 1 ? 1 : 0;
+    }
+    return { most, over, pixels: one.length / 4 };
+}
+
+/** At most one pixel in 10,000 differs by more than a step. */
+function isSame({ over, pixels, most }) {
+    holds(over <= pixels / 1e4, `${over} of ${pixels} pixels differ, by up to ${most}`);
+}
+
+const run = promisify(execFile);
+/** Renders the frame of a scene's text by the program. */
+async function rendered(name, text, [width, height], backend, tile) {
+    const [scene, picture] = [join(scratch, `${name}.toml`), join(scratch, `${name}.png`)];
+    writeFileSync(scene, text);
+    const manifest = process.env.SWIFTSHADER;
+    const environment = { ...process.env, VK_DRIVER_FILES: manifest, VK_ICD_FILENAMES: manifest };
+    const [fullWidth, fullHeight, ...place] = tile ?? [width, height];
+    const part = tile === undefined ? [] : ["--tile", [...place, width, height].join(",")];
+    const options = ["render", scene, "--size", `${fullWidth}x${fullHeight}`, ...part, "--backend", backend,
+        "--progress", "none", "--again", "--out", picture];
+    await run(program, options, { env: environment });
+}
+
+/** The pixels of that. */
+async function pixelsOf(name) {
+    return bytesOf(await page.evaluate(async (url) => base64((await decoded(url)).data), `/scratch/${name}.png`));
+}
+
+const SIZE = [160, 90];
+const SCENES = {
+    "default disk": { settings: {} },
+    // Rays of large frames are looked up, and so are those of a part.
+    "spin by tables": { settings: { hole: { spin: 0.9 } }, size: [192, 108], tile: [1920, 1080, 864, 160] },
+    "rays by RK4": { settings: { quality: { method: "rk4" } } },
+    "four samples": { settings: { quality: { samples_per_pixel: 4 } } },
+    "volume with structure": {
+        settings: {
+            hole: { spin: 0.6 },
+            disk: false,
+            volumes: [{ shape: "disk" }],
+            camera: { orbit: { distance: 28, elevation: 0.15 } },
+        },
+        size: [64, 36],
+    },
+    "hot spot": { settings: { hot_spots: [{ radius: 8 }] }, size: [96, 54] },
+    equirect: { settings: { camera: { projection: "equirect" } }, size: [192, 96] },
+    "inside the horizon": {
+        settings: { camera: { position: [0, 1.2, 0.4], motion: "free_fall", fov_y: 1.6 }, disk: { inner_radius: 4 } },
+    },
+};
+
+const { page, said } = await opened();
+
+// The program makes its frames beside the page, one after the other.
+const natives = new Map();
+let before = Promise.resolve();
+for (const [name, { settings, size = SIZE, tile }] of Object.entries(SCENES)) {
+    const text = await page.evaluate((settings) => wasm.wholeScene(settingsModule.textOf(settings), 0), settings);
+    before = before.catch(() => undefined).then(() => rendered(name, text, size, "vulkan", tile));
+    before.catch(() => undefined);
+    natives.set(name, before);
+}
+
+await test("every kernel compiles in the browser without a message", async () => {
+    const found = await page.evaluate(async () => {
+        const adapter = await navigator.gpu.requestAdapter();
+        const { maxStorageBuffersPerShaderStage, maxStorageTexturesPerShaderStage } = adapter.limits;
+        const device = await adapter.requestDevice({
+            requiredLimits: { maxStorageBuffersPerShaderStage, maxStorageTexturesPerShaderStage },
+        });
+        const list = wasm.kernels();
+        const bad = [];
+        for (let i = 0; i < list.length; i += 2) {
+            device.pushErrorScope("validation");
+            const shader = device.createShaderModule({ code: list[i + 1] });
+            const { messages } = await shader.getCompilationInfo();
+            const error = await device.popErrorScope();
+            for (const { lineNum, message } of messages) {
+                bad.push(`${list[i]}: ${message} | ${list[i + 1].split("\n")[lineNum - 1] ?? ""}`);
+            }
+            if (error !== null && messages.length === 0) {
+                bad.push(`${list[i]}: ${error.message}`);
+            }
+        }
+        device.destroy();
+        return { count: list.length / 2, bad };
+    });
+    holds(found.count > 30, `only ${found.count} kernels`);
+    holds(found.bad.length === 0, found.bad.join("\n"));
+});
+
+for (const [name, { settings, size = SIZE, tile }] of Object.entries(SCENES)) {
+    await test(`${name} is that of native bhr`, async () => {
+        const made = await page.evaluate(async ([settings, [width, height], tile]) => {
+            window.hole ??= await bhr.BlackHole.create(null, { backend: "webgpu" });
+            hole.reset().set(settings);
+            if (tile !== null) {
+                const [full_width, full_height, x, y] = tile;
+                hole.set({ region: { full_width, full_height, x, y } });
+            }
+            const { data } = await hole.image(width, height);
+            return { pixels: base64(data), stats: hole.stats };
+        }, [settings, size, tile ?? null]);
+        holds(made.stats.rays >= size[0] * size[1], `only ${made.stats.rays} rays`);
+        holds(tile === undefined || made.stats.lens_tables > 0, "no table was made");
+        await natives.get(name);
+        const own = bytesOf(made.pixels);
+        holds(new Set(own).size > 20, "the frame shows nothing");
+        const found = difference(own, await pixelsOf(name));
+        isSame(found);
+    });
+}
+
+await test("the CPU tracer's frame, of a worker, is the native one", async () => {
+    const made = await page.evaluate(async () => {
+        const cpu = await bhr.BlackHole.create(null, { backend: "cpu" });
+        const { data } = await cpu.set({ hole: { spin: 0.5 } }).image(64, 36);
+        const light = await cpu.light(8, 4);
+        const found = { pixels: base64(data), text: cpu.text(), adapter: cpu.adapter, light: light.length };
+        await cpu.destroy();
+        return found;
+    });
+    holds(made.adapter.backend === "cpu" && made.light === 128, JSON.stringify(made.adapter));
+    await rendered("cpu", made.text, [64, 36], "cpu");
+    const found = difference(bytesOf(made.pixels), await pixelsOf("cpu"));
+    isSame(found);
+});
+
+await test("a canvas shows the image's pixels", async () => {
+    const image = await page.evaluate(async () => {
+        window.shown = await bhr.BlackHole.create(canvas);
+        shown.set({ hole: { spin: 0.4 } });
+        // Later calls share one more frame.
+        const all = [shown.render(), shown.render(), shown.render()];
+        await Promise.all(all);
+        if (shown.stats.frame_index > 2) {
+            throw new Error(`${shown.stats.frame_index} frames were made`);
+        }
+        const { data } = await shown.image(canvas.width, canvas.height);
+        await shown.render();
+        return base64(data);
+    });
+    const picture = await page.locator("#picture").screenshot({ path: join(scratch, "canvas.png") });
+    holds(picture.length > 0, "no screenshot");
+    const seen = bytesOf(await page.evaluate(async () => base64((await decoded("/scratch/canvas.png")).data)));
+    const found = difference(seen, bytesOf(image));
+    holds(found.over === 0, `${found.over} of ${found.pixels} pixels differ, by up to ${found.most}`);
+});
+
+await test("bad input gives the C API's message, and changes nothing", async () => {
+    const found = await page.evaluate(async () => {
+        const thrown = async (work) => {
+            try {
+                await work();
+                return { message: "nothing was thrown" };
+            } catch (error) {
+                return { message: error.message, code: error.code, kind: error.constructor.name };
+            }
+        };
+        hole.reset().set({ hole: { spin: 0.3 } });
+        const before = hole.text();
+        const all = [
+            await thrown(() => hole.set({ hole: { spin: 1.5 } })),
+            await thrown(() => hole.set({ film: { bloom: -1 } })),
+            await thrown(() => hole.set({ camera: { positron: [0, 1, 2] } })),
+            await thrown(() => hole.set({ disk: { outer_radius: "wide" } })),
+            await thrown(() => hole.set({ sky: { map: "sky.png" } })),
+            await thrown(() => hole.set({ time: null })),
+            await thrown(() => hole.image(0, 10)),
+            await thrown(() => hole.image(2000000, 1)),
+            await thrown(() => hole.load("v=2")),
+            await thrown(() => hole.load("#v=1&hole.spin=7")),
+            await thrown(() => hole.load("v=1&__proto__.x=7")),
+            await thrown(() => hole.load("v=1&volumes.3.shape=torus")),
+            await thrown(() => bhr.BlackHole.create(null, { backend: "gl" })),
+        ];
+        return { all, same: before === hole.text() };
+    });
+    const expected = [/^\[hole\]: spin is 1\.5; it must lie in \[-1, 1\]$/, /^\[film\]: film bloom is -1; /,
+        /positron/, /outer_radius is text; it must be/, /a page has no files/, /time is null/, /width is 0; /,
+        /2000000/, /begins with v=1/, /spin is 7; /, /is no name/, /comes before/, /backend is gl; /];
+    holds(found.all.length === expected.length, "another number of mistakes");
+    found.all.forEach(({ message }, i) => holds(expected[i].test(message), `${message} is not ${expected[i]}`));
+    holds(found.all[0].code === "INVALID_ARGUMENT" && found.all[4].code === "UNSUPPORTED", JSON.stringify(found.all));
+    holds(found.same, "a mistake changed the scene");
+});
+
+/** A value of a field other than its default. */
+function another(field) {
+    const enumeration = json.enumerations.find(({ name }) => name === field.type);
+    if (enumeration !== undefined) {
+        return enumeration.constants.at(field.default === 0 ? -1 : 0).toLowerCase();
+    }
+    if (field.name === "flags") {
+        return ["one", "other"];
+    }
+    const number = (usual, i) => (usual ?? 0) + 1 + (field.type === "double" ? 0.1 * (i + 1) : 0);
+    const { array, default: usual } = field;
+    return array ? Array.from({ length: array }, (_, i) => number(usual?.[i], i)) : number(usual, 0);
+}
+
+await test("every field comes back from a link", async () => {
+    const structs = { camera: "BhrCamera", disk: "BhrDisk", sky: "BhrSky", film: "BhrFilm", quality: "BhrQuality",
+        volumes: "BhrVolume", hot_spots: "BhrHotSpot", region: "BhrRegion" };
+    const all = Object.entries(structs).flatMap(([section, name]) => {
+        const { fields } = json.structs.find((one) => one.name === name);
+        return fields.filter(({ name }) => !/^(struct_size|reserved\d*)$/.test(name)).map((field) => {
+            const one = { [field.name]: another(field) };
+            return [section, field.name, /s$/.test(section) ? { [section]: [one] } : { [section]: one }];
+        });
+    });
+    const more = [{ preset: "teaching", film: { bloom: 0 } }, { disk: false }, { volumes: [] },
+        { volumes: [{}, { seed: 3 }] },
+        { hole: { spin: -0.25, axis: [0, 1, 0] }, time: -1e21, view: "redshift" }, { effects: [] },
+        { camera: { position: [5, 5, 5], forward: [0, -26, -2.5] } },
+        { camera: { orbit: { distance: 20, azimuth: 1e-7 }, look_at: [1, 2, 3], turn: { up: 0.5 } } },
+        { volumes: [{ seed: 5 }, { shape: "torus", tint: [1, 0.5, 0.25] }], hot_spots: [{ radius: 9 }] }];
+    const found = await page.evaluate(([all, more]) => {
+        const usual = wasm.defaultScene();
+        const bad = [];
+        const plain = (settings) => JSON.stringify(settings);
+        for (const settings of [...all.map((one) => one[2]), ...more]) {
+            const address = links.link(settings, usual);
+            const after = plain(links.settingsOf(`#${address}`, usual));
+            if (after !== plain(settings)) {
+                bad.push(`${address}: ${after} is not ${plain(settings)}`);
+            }
+        }
+        for (const [section, name] of all) {
+            const known = new RegExp(`^\\[+${section}\\]+\\n(?:[a-z].*\\n)*?${name} = `, "m").test(usual);
+            if (!known && section !== "region") {
+                bad.push(`the tracer knows no ${section}.${name}`);
+            }
+        }
+        // Through the tracer, and what is as in a new scene is in no link.
+        const seed = 12345678901234567890n;
+        hole.reset().set({ hole: { spin: 0.75 }, disk: { seed, opacity: 1 }, camera: { up: [0, 0, 1] } });
+        const [address, text] = [hole.link(), hole.text()];
+        const expected = `v=1&hole.spin=0.75&disk.seed=${seed}`;
+        if (address !== expected || hole.reset().load(address).text() !== text) {
+            bad.push(address);
+        }
+        return bad;
+    }, [all, more]);
+    holds(all.length > 100, `only ${all.length} fields`);
+    holds(found.length === 0, found.slice(0, 20).join("\n"));
+});
+
+await test("the defaults that links of version 1 mean are as they were", async () => {
+    const text = await page.evaluate(() => wasm.defaultScene());
+    const fields = text.split("\n").slice(1).join("\n");
+    const file = join(here, "defaults-1.txt");
+    if (process.env.BHR_UPDATE_LINKS === "1") {
+        writeFileSync(file, fields);
+    }
+    const usual = readFileSync(file, "utf8");
+    holds(fields === usual, "a default changed: links of version 1 need the old one in web/link.ts");
+});
+
+await test("set lays objects over one another, and undefined takes back", async () => {
+    const found = await page.evaluate(() => {
+        hole.reset().set({ camera: { fov_y: 1 }, hole: { spin: 0.5 } }).set({ camera: { jitter: [0.1, 0.2] } });
+        hole.set({ hole: undefined });
+        return [hole.scene, hole.link()];
+    });
+    const expected = [{ camera: { fov_y: 1, jitter: [0.1, 0.2] } }, "v=1&camera.fov_y=1&camera.jitter=0.1,0.2"];
+    holds(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
+});
+
+await test("the page in docs/web.md shows a hole, and turns it where it is dragged", async () => {
+    const [, sample] = /```html\n(.*?)```/s.exec(readFileSync(join(here, "../../docs/web.md"), "utf8"));
+    // Fewer pixels are enough.
+    const small = sample.replace('width="960" height="540"', 'width="96" height="54"');
+    holds(small !== sample, "the sample's canvas has another size");
+    writeFileSync(join(scratch, "sample.html"), small);
+    const other = await browser.newPage({ viewport: { width: 192, height: 120 } });
+    const wrong = [];
+    other.on("pageerror", (error) => wrong.push(String(error)));
+    await other.goto(address.replace("page.html", "sample.html"));
+    const seen = async () => {
+        await other.locator("canvas").screenshot({ path: join(scratch, "sample.png") });
+        return bytesOf(await page.evaluate(async () => base64((await decoded("/scratch/sample.png")).data)));
+    };
+    /** The picture, once it is as it should be. */
+    const until = async (is) => {
+        for (let last; ;) {
+            last = await seen();
+            if (is(last) || wrong.length > 0) {
+                return last;
+            }
+            await new Promise((done) => setTimeout(done, 300));
+        }
+    };
+    const first = await until((pixels) => new Set(pixels).size > 20);
+    await other.mouse.move(60, 60);
+    await other.mouse.down();
+    await other.mouse.move(150, 40);
+    await other.mouse.up();
+    await until((pixels) => difference(pixels, first).over > 100);
+    holds(wrong.length === 0, wrong.join("\n"));
+    const { hash } = new URL(other.url());
+    holds(/^#v=1&hole\.spin=0\.9&camera\.orbit\.distance=26&/.test(hash), hash);
+    await other.close();
+});
+
+await test("nothing was said in the console", async () => holds(said.length === 0, said.join("\n")));
+
+await test("a lost device is told, and another one shows the same", async () => {
+    const found = await page.evaluate(async () => {
+        hole.reset();
+        const before = base64((await hole.image(48, 27)).data);
+        hole.loseDevice();
+        const error = await hole.lost;
+        const after = await hole.image(48, 27).then(() => "an image", (error) => error.code);
+        const again = await bhr.BlackHole.create(null, { backend: "webgpu" });
+        const same = base64((await again.image(48, 27)).data) === before;
+        await again.destroy();
+        return { message: error.message, code: error.code, after, same };
+    });
+    holds(found.code === "DEVICE_LOST" && found.after === "DEVICE_LOST" && found.same, JSON.stringify(found));
+    holds(/the GPU device was lost/.test(found.message), found.message);
+});
+
+await browser.close();
+server.close();
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed === 0 && passed > 0 ? 0 : 1);

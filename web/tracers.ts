@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// tracers.ts -- the two tracers of a page behind one face: WebGPU on the page's thread, and the CPU tracer in a worker.
+// Each call is awaited before the next.
+
+import { ended, unlessEnded, type loaded, type Source } from "./load.js";
+import type { Answer, Order } from "./worker.js";
+import type { Tracer } from "./wasm/bhr.js";
+
+/** Formats of images in memory. */
+export type Pixels = "rgba8" | "rgba32f";
+
+/** Packed rows of red, green, blue and alpha. */
+export interface Image {
+    pixels: Uint8ClampedArray | Float32Array;
+}
+
+/** What traces. */
+export interface Adapter {
+    backend: "webgpu" | "cpu";
+    name: string;
+    driver: string;
+    discrete: boolean;
+    /** Whether no hardware is behind it. */
+    software: boolean;
+}
+
+/** Numbers about a frame, as BhrFrameStats; times in nanoseconds. */
+export interface Stats {
+    frame_index: number;
+    rays: number;
+    steps: number;
+    cpu_ns: number;
+    gpu_ns: number;
+    readback_ns: number;
+    device_bytes: number;
+    lens_tables: number;
+    auto_ev: number;
+}
+
+/** A tracer. */
+export interface Traces {
+    readonly adapter: Adapter;
+    readonly stats: Stats;
+    readonly lost: Promise<Error>;
+    paint(scene: string, canvas: HTMLCanvasElement): Promise<void>;
+    image(scene: string, width: number, height: number, format: Pixels): Promise<Image>;
+    loseDevice(): void;
+    end(): void;
+}
+
+/** The pixels of bytes. */
+export function pixelsOf(bytes: Uint8Array, format: Pixels): Image {
+    const { buffer, byteOffset, byteLength } = bytes;
+    const pixels =
+        format === "rgba8"
+            ? new Uint8ClampedArray(buffer, byteOffset, byteLength)
+            : new Float32Array(buffer, byteOffset, byteLength / 4);
+    return { pixels };
+}
+
+/** A promise with what settles it. */
+function promised<T>(): { promise: Promise<T>; resolve: (value: T) => void } {
+    let resolve!: (value: T) => void;
+    const promise = new Promise<T>((done) => (resolve = done));
+    return { promise, resolve };
+}
+
+/** WebGPU. */
+export class GpuTracer implements Traces {
+    readonly adapter: Adapter;
+    readonly lost: Promise<Error>;
+    /** Kept here: the module lends a tracer that has a frame under way to nobody. */
+    stats: Stats;
+    private readonly tell: (error: Error) => void;
+
+    private constructor(private readonly tracer: Tracer) {
+        this.adapter = tracer.adapter() as Adapter;
+        this.stats = tracer.stats() as Stats;
+        const { promise, resolve } = promised<Error>();
+        [this.lost, this.tell] = [promise, resolve];
+    }
+
+    static async start(wasm: Awaited<ReturnType<typeof loaded>>): Promise<GpuTracer> {
+        const tracer = await unlessEnded(wasm.Tracer.onWebGpu());
+        const gpu = new GpuTracer(tracer);
+        void tracer.lost().then(gpu.tell);
+        ended.catch(gpu.tell);
+        return gpu;
+    }
+
+    async paint(scene: string, canvas: HTMLCanvasElement): Promise<void> {
+        await unlessEnded(this.tracer.paint(scene, 0, canvas));
+        this.stats = this.tracer.stats() as Stats;
+    }
+
+    async image(scene: string, width: number, height: number, format: Pixels): Promise<Image> {
+        const bytes = await unlessEnded(this.tracer.image(scene, 0, width, height, format === "rgba32f"));
+        this.stats = this.tracer.stats() as Stats;
+        return pixelsOf(bytes, format);
+    }
+
+    loseDevice(): void {
+        this.tracer.loseDevice();
+    }
+
+    end(): void {
+        this.tracer.free();
+    }
+}
+
+/** The CPU tracer, in a worker. */
+export class CpuTracer implements Traces {
+    readonly lost: Promise<Error>;
+    stats: Stats;
+    private waiting: { done: (answer: Answer) => void; failed: (error: Error) => void } | undefined;
+
+    private constructor(
+        private readonly worker: Worker,
+        readonly adapter: Adapter,
+        first: Stats,
+    ) {
+        this.stats = first;
+        const { promise, resolve } = promised<Error>();
+        this.lost = promise;
+        worker.onmessage = ({ data }: MessageEvent<Answer>) => this.settle(({ done }) => done(data));
+        worker.onerror = (event) => {
+            const error = new Error(`the worker of the CPU tracer ended: ${event.message}`);
+            resolve(error);
+            this.settle(({ failed }) => failed(error));
+        };
+    }
+
+    static async start(make: (() => Worker) | undefined, source: Source | undefined): Promise<CpuTracer> {
+        const worker = make?.() ?? new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+        const answer = await new Promise<Answer>((resolve, reject) => {
+            worker.onmessage = ({ data }: MessageEvent<Answer>) => resolve(data);
+            worker.onerror = (event) => reject(new Error(`the worker of the CPU tracer: ${event.message}`));
+            // A response cannot be sent to a worker, which fetches the module by itself.
+            const plain = source instanceof URL ? source.href : typeof source === "string" ? source : undefined;
+            const absolute = plain === undefined ? undefined : new URL(plain, location.href).href;
+            worker.postMessage({ kind: "start", wasm: absolute } satisfies Order);
+        });
+        if (answer.kind !== "started") {
+            worker.terminate();
+            throw failure(answer);
+        }
+        return new CpuTracer(worker, answer.adapter, answer.stats);
+    }
+
+    async paint(scene: string, canvas: HTMLCanvasElement): Promise<void> {
+        const { width, height } = canvas;
+        const { pixels } = await this.image(scene, width, height, "rgba8");
+        const context = canvas.getContext("2d");
+        if (context === null) {
+            throw new Error("the canvas has another context than the CPU tracer's, which is 2d");
+        }
+        context.putImageData(new ImageData(pixels as Uint8ClampedArray<ArrayBuffer>, width, height), 0, 0);
+    }
+
+    async image(scene: string, width: number, height: number, format: Pixels): Promise<Image> {
+        const answer = await new Promise<Answer>((done, failed) => {
+            this.waiting = { done, failed };
+            this.worker.postMessage({ kind: "image", scene, width, height, format } satisfies Order);
+        });
+        if (answer.kind !== "image") {
+            throw failure(answer);
+        }
+        this.stats = answer.stats;
+        return pixelsOf(answer.bytes, format);
+    }
+
+    loseDevice(): void {
+        this.worker.onerror?.(new ErrorEvent("error", { message: "a test asked" }));
+        this.end();
+    }
+
+    end(): void {
+        this.worker.terminate();
+        const error = new Error("the black hole was destroyed");
+        this.settle(({ failed }) => failed(error));
+    }
+
+    private settle(how: (waiting: NonNullable<typeof this.waiting>) => void): void {
+        const waiting = this.waiting;
+        this.waiting = undefined;
+        if (waiting !== undefined) {
+            how(waiting);
+        }
+    }
+}
+
+/** The error that a worker tells of. */
+function failure(answer: Answer): Error {
+    if (answer.kind !== "failed") {
+        return new Error("the worker of the CPU tracer answers something else");
+    }
+    return Object.assign(new Error(answer.message), { code: answer.code });
+}
