@@ -1112,8 +1112,8 @@ typedef struct BhrFilm {
     /** Lens flare, 0 .. 1, 0 off (default): the lens reflects 0.15 flare of each pixel's light into ghosts, blurred
      * images of its aperture (spike_blades, spike_angle) in several colours, on the line from that pixel through the
      * middle of the frame. Ghosts of lights near the border are faint: that light is lost, no other. With a region
-     * set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md. @since 0.2.0
-     */
+     * set, 8- and 10-bit images of light are INVALID_STATE when they are rendered. docs/colour-and-film.md.
+     * @since 0.2.0 */
     double flare;
     uint32_t flare_ghosts; /**< How many ghosts each light has, 0 .. 8; 0, the default, stands for 5. @since 0.2.0 */
     uint32_t reserved;     /**< Reserved: 0. @since 0.2.0 */

@@ -159,4 +159,9 @@ need_rust() {
         rustup component add rustfmt clippy ||
             stop "cargo $part is missing. Run:" "    rustup component add rustfmt clippy"
     done
+    # The standard library of web pages.
+    local triple=wasm32-unknown-unknown
+    compgen -G "$(rustc --print target-libdir --target "$triple")/libstd-*.rlib" >/dev/null ||
+        rustup target add "$triple" ||
+        stop "Rust's standard library for $triple is missing. Run:" "    rustup target add $triple"
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Ghosts of a lens flare: that light is kept but towards the border, and lies where the lens reflects it, in the aperture's shape.
+//! Ghosts of a lens flare: that light is kept but towards the border, and lies where the lens reflects it, in the
+//! aperture's shape.
 
 use super::spike_tests::{Field, point, spread};
 use super::*;
