@@ -333,6 +333,12 @@ impl Renderer {
         }
     }
 
+    /// The request to a tracer for an image of the scene. Errors: as [`FrameRequest::checked`].
+    fn request(&self, target: &ImageMut<'_>, transparent: bool, region: Option<Region>) -> Result<FrameRequest> {
+        let size = [target.width(), target.height()];
+        FrameRequest::checked(&self.scene, target.format(), size, transparent, region)
+    }
+
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
@@ -347,13 +353,7 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let start = Instant::now();
-        let request = FrameRequest::checked(
-            &self.scene,
-            target.format(),
-            [target.width(), target.height()],
-            transparent,
-            region,
-        )?;
+        let request = self.request(target, transparent, region)?;
         self.help_to_write(target);
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
@@ -477,13 +477,7 @@ impl Renderer {
         transparent: bool,
         region: Option<Region>,
     ) -> Result<Job> {
-        let request = FrameRequest::checked(
-            &self.scene,
-            target.format(),
-            [target.width(), target.height()],
-            transparent,
-            region,
-        )?;
+        let request = self.request(&target, transparent, region)?;
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);

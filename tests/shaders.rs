@@ -156,7 +156,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gather", "for (var y = first.y; y < taps.y; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = first.x; x < taps.x; x += 1)", CONSTANT),
     ("bloom/ghosts", "inside", "for (var pair = 0u; pair < GHOST_PAIRS; pair += 1u)", CONSTANT),
-    ("bloom/ghosts", "ghost_light", "for (var y = cells.y + i32(part); y < cells.w; y += i32(PARTS))", SOURCE),
+    ("bloom/ghosts", "ghost_light", "for (var y = cells.y + i32(part); y < cells.w; y += i32(THREADS_A_CELL))", SOURCE),
     ("bloom/ghosts", "ghost_light", "for (var x = cells.x; x < cells.z; x += 4)", SOURCE),
     ("bloom/ghosts", "draw_ghosts", "for (var i = 0u; i < min(flare.count, MOST_GHOSTS); i += 1u)", CONSTANT),
     ("bloom/spikes", "element_light", "for (var j = first; j < end; j += 1u)", ELEMENT),

@@ -10,11 +10,11 @@
 @group(0) @binding(1) var reflected_light: texture_2d<f32>;
 @group(0) @binding(2) var drawn: texture_storage_2d<rgba16float, write>;
 
-const PARTS: u32 = 4u;
+const THREADS_A_CELL: u32 = 4u;
 const ACROSS: u32 = 8u;
 const DOWN: u32 = 4u;
 // The light of the threads of each part.
-var<workgroup> parts: array<vec4<f32>, ACROSS * DOWN * PARTS>;
+var<workgroup> parts: array<vec4<f32>, ACROSS * DOWN * THREADS_A_CELL>;
 
 // The source's cells, from and up to, whose images may reach a place.
 fn seen(ghost: Ghost, place: vec2<f32>) -> vec4<i32> {
@@ -54,7 +54,7 @@ fn cell_light(ghost: Ghost, place: vec2<f32>, cell: vec2<i32>, end: i32) -> vec3
 fn ghost_light(ghost: Ghost, place: vec2<f32>, part: u32) -> vec3<f32> {
     let cells = seen(ghost, place);
     var sum = vec3<f32>(0.0);
-    for (var y = cells.y + i32(part); y < cells.w; y += i32(PARTS)) {
+    for (var y = cells.y + i32(part); y < cells.w; y += i32(THREADS_A_CELL)) {
         for (var x = cells.x; x < cells.z; x += 4) {
             let light0 = cell_light(ghost, place, vec2<i32>(x, y), cells.z);
             let light1 = cell_light(ghost, place, vec2<i32>(x + 1, y), cells.z);
@@ -66,7 +66,7 @@ fn ghost_light(ghost: Ghost, place: vec2<f32>, part: u32) -> vec3<f32> {
     return ghost.shares.xyz * sum;
 }
 
-@compute @workgroup_size(ACROSS, DOWN, PARTS)
+@compute @workgroup_size(ACROSS, DOWN, THREADS_A_CELL)
 fn draw_ghosts(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_id) thread: vec3<u32>,
