@@ -84,8 +84,7 @@ fn kind_of(given: &ArgMatches) -> Result<(Option<Codec>, PixelFormat), Ending> {
         (Some("png"), true) => return Err(Ending::usage("--float: it is for .exr files")),
         (_, _) if hdr.is_some() => {
             return Err(Ending::usage(
-                "--hdr: pictures of high dynamic range are .png files or videos; .exr files hold \
-                                      all of the light anyway",
+                "--hdr: pictures of high dynamic range are .png files or videos; .exr files have no limit",
             ));
         }
         (Some("exr"), false) => PixelFormat::Rgba16F,
@@ -214,8 +213,7 @@ impl Order {
         if !outputs.is_empty() && (format.is_developed() || stereo.is_some()) {
             return Err(Ending::usage("--outputs: only .exr files of one eye have layers"));
         }
-        let hdr = format.is_developed() && format != PixelFormat::Rgba8Srgb;
-        if tile.is_some() && hdr && codec.is_none() {
+        if tile.is_some() && format.is_hdr() && codec.is_none() {
             return Err(Ending::usage("--tile: tiles of high dynamic range cannot be joined; only a video takes both"));
         }
         if tile.is_some() && stereo.is_some() && codec.is_none() {
@@ -229,7 +227,7 @@ impl Order {
             return Err(Ending::usage("--shutter: motion blur is for whole frames of one eye without --outputs"));
         }
         let transparent = given.get_flag("transparent");
-        if transparent && hdr {
+        if transparent && format.is_hdr() {
             return Err(Ending::usage("--transparent: pictures of high dynamic range have no alpha"));
         }
         let hash_of =

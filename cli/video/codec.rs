@@ -33,8 +33,7 @@ impl Codec {
         format: PixelFormat,
     ) -> Result<Option<Self>, Ending> {
         // H.264 has 10 bits in profiles that hardly any player has.
-        let is_hdr = matches!(format, PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg);
-        let name = if is_hdr && extension == Some("mp4") { name.or(Some("h265")) } else { name };
+        let name = if format.is_hdr() && extension == Some("mp4") { name.or(Some("h265")) } else { name };
         let kind = match (extension, name) {
             (Some("mp4" | "mov"), Some("h264")) | (Some("mp4"), None) => Kind::H264,
             (Some("mp4" | "mov"), Some("h265")) => Kind::H265,
@@ -73,7 +72,7 @@ impl Codec {
             }
             Some(quality) => quality,
         };
-        if is_hdr && kind == Kind::H264 {
+        if format.is_hdr() && kind == Kind::H264 {
             return Err(Ending::usage("--hdr: videos of high dynamic range are of h265, av1, prores or prores4444"));
         }
         Ok(Some(Self { kind, quality, format }))
@@ -136,11 +135,7 @@ impl Codec {
 
     /// The form of the pixels that it is given, by ffmpeg's names.
     pub fn input(&self) -> &'static str {
-        if self.is_hdr() { "x2bgr10le" } else { "rgba" }
-    }
-
-    fn is_hdr(&self) -> bool {
-        matches!(self.format, PixelFormat::Rgb10A2Pq | PixelFormat::Rgb10A2Hlg)
+        if self.format.is_hdr() { "x2bgr10le" } else { "rgba" }
     }
 
     /// The curve of its pixels, by ffmpeg's names. ProRes has no name for that of sRGB; players show both alike.
@@ -156,12 +151,12 @@ impl Codec {
     /// The primaries of its pixels, and the matrix to luma and chroma, by ffmpeg's names; and the matrix as its filter
     /// scale names it.
     pub fn primaries(&self) -> [&'static str; 3] {
-        if self.is_hdr() { ["bt2020", "bt2020nc", "bt2020"] } else { ["bt709", "bt709", "bt709"] }
+        if self.format.is_hdr() { ["bt2020", "bt2020nc", "bt2020"] } else { ["bt709", "bt709", "bt709"] }
     }
 
     /// How the codec is made, in words that differ where its bytes do.
     pub fn name(&self) -> String {
         let Self { kind, quality, format } = self;
-        if self.is_hdr() { format!("{kind:?} {quality} {format:?}") } else { format!("{kind:?} {quality}") }
+        if format.is_hdr() { format!("{kind:?} {quality} {format:?}") } else { format!("{kind:?} {quality}") }
     }
 }
