@@ -6,11 +6,11 @@ use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result, out_of_range};
 use crate::film::whole::develop_whole;
 use crate::image::memory::Layout;
 use crate::image::{ImageMut, Lut, PixelFormat};
+use crate::parallel::prelude::*;
+use crate::parallel::{ThreadPool, ThreadPoolBuilder};
 use crate::scene::Film;
 use crate::thread_state::begin_own_thread;
 use crate::tracer::Tile;
-use rayon::ThreadPool;
-use rayon::prelude::*;
 
 /// The weights that frames may have.
 const LEAST_WEIGHT: f64 = 1e-6;
@@ -42,7 +42,7 @@ impl Accumulation {
         let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
         let threads = if threads > 0 { threads as usize } else { cores() };
         allocate::check_room(threads * THREAD_ROOM + 2 * pixels * size_of::<[f32; 4]>(), LIGHT)?;
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("bhr-film-{i}"));
+        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("bhr-film-{i}"));
         let pool = builder.start_handler(|_| begin_own_thread()).build();
         let pool = pool.map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start threads: {e}")))?;
         // Once all of them run, they have what threads take at their start, which is not ours to refuse.

@@ -13,9 +13,9 @@
 //! - [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files.
 //! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
 //! - `random`, `recent` (costly things that are kept), `deferred` (work that waits until a thread holds no lock of the
-//!   process), `attempt` (what fails no call), `allocate` (memory that may be refused), `thread_scope` (what the
-//!   library's threads take over from the threads that they work for), `platform` (what is asked of the system),
-//!   [`error`].
+//!   process), `attempt` (what fails no call), `allocate` (memory that may be refused), `parallel` (work on a pool of
+//!   threads), `thread_scope` (what the library's threads take over from the threads that they work for), `platform`
+//!   (what is asked of the system), [`error`].
 //!
 //! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms/imports.rs holds it.
 
@@ -32,6 +32,8 @@ pub mod gpu;
 pub mod image;
 pub mod interop;
 pub mod job;
+#[cfg_attr(target_arch = "wasm32", path = "parallel_absent.rs")]
+mod parallel;
 pub mod physics;
 mod platform;
 mod random;

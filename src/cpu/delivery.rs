@@ -9,8 +9,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::film::metering::{MeterParams, SpreadLight};
+use crate::parallel::prelude::*;
 use crate::tracer::{Progress, Tile, TileSink};
-use rayon::prelude::*;
 
 /// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.
 const LIGHT_MEMORY: u64 = 192 << 20;

@@ -14,13 +14,13 @@ use crate::emit::half::Evenness;
 use crate::error::Result;
 use crate::film::{FilmParams, develop_row};
 use crate::image::Lut;
+use crate::parallel::prelude::*;
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{KerrThreshold, Scene, View};
 use crate::sky::StarIndex;
 use crate::tracer::{FrameRequest, Tile};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A frame being rendered.

@@ -7,8 +7,8 @@ use crate::allocate::filled;
 use crate::emit::half::{Evenness, STENCIL, block_place, blocks_of, counts, first_block};
 use crate::emit::medium::{Media, Medium};
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use crate::scene::record::Record;
-use rayon::prelude::*;
 
 /// The blocks that the pixels of a tile are found from.
 pub struct Blocks<'a> {

@@ -3,15 +3,16 @@
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
+use crate::parallel::{ThreadPool, ThreadPoolBuilder};
 use crate::thread_state::begin_own_thread;
 
-pub(super) struct Pool(rayon::ThreadPool);
+pub(super) struct Pool(ThreadPool);
 
 impl Pool {
     /// So many threads. Errors: OUT_OF_MEMORY when the system gives none.
     pub fn new(count: usize) -> Result<Self> {
         allocate::check_room(count * THREAD_ROOM, "the threads of the CPU tracer")?;
-        let pool = rayon::ThreadPoolBuilder::new()
+        let pool = ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|i| format!("bhr-cpu-{i}"))
             .start_handler(|_| begin_own_thread())

@@ -2,9 +2,9 @@
 //! Rays that a host asks for, traced side by side.
 
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use crate::scene::host_rays::{trace_ray, transfer_ray, transfer_setup};
 use crate::scene::{Hit, Ray, Scene, Transfer};
-use rayon::prelude::*;
 
 /// Traces `rays` in parallel on the current pool.
 pub fn trace_rays(scene: &Scene, rays: &[Ray], hits: &mut [Hit]) {

@@ -5,6 +5,7 @@
 use crate::allocate::{filled, with_room};
 use crate::emit::baked::{Baked, BakedCache};
 use crate::error::Result;
+use crate::parallel::{join, prelude::*};
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::physics::lens::{LENS, SchwarzschildLens};
@@ -14,7 +15,6 @@ use crate::scene::observer::Lens;
 use crate::scene::refine::reached_u;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -136,7 +136,7 @@ pub(super) fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Resul
         }
         Ok(Some(columns))
     };
-    let (escaping, captured) = rayon::join(|| columns(Branch::Escaping), || columns(Branch::Captured));
+    let (escaping, captured) = join(|| columns(Branch::Escaping), || columns(Branch::Captured));
     let (Some(escaping), Some(captured)) = (escaping?, captured?) else { return Ok(None) };
     SchwarzschildLens::from_columns(family, escaping, captured)
 }

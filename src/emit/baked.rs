@@ -13,8 +13,8 @@ use super::matter::VolumeMatter;
 use super::shape::Cloud;
 use crate::allocate::{filled, with_room};
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use half::f16;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The least and the largest factor: what f16 holds with all of its digits.

@@ -34,8 +34,8 @@ pub use spikes::{SPIKE_ELEMENTS, SPIKE_TERMS, SpikeLine, Spikes};
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
 use crate::image::PixelFormat;
+use crate::parallel::prelude::*;
 use crate::scene::{Film, Optics, Scene, View};
-use rayon::prelude::*;
 
 /// The share s that `bloom` = 1 scatters.
 const MOST_SCATTERED: f64 = 0.4;

@@ -19,8 +19,8 @@ use super::grade::LEAST_BASE;
 use super::tone_map::MAX_SCENE_LIGHT;
 use crate::allocate::{collected, filled};
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use crate::scene::Film;
-use rayon::prelude::*;
 
 /// log2 of the least luminance that is measured, negative.
 pub(crate) const METER_DARKEST: f32 = 16.0;
@@ -194,7 +194,7 @@ impl Metered {
             a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
             a
         };
-        let histogram = parts.reduce(|| [0; METER_BINS], sum);
+        let histogram = parts.reduce_with(sum).unwrap_or([0; METER_BINS]);
         measured.histogram.copy_from_slice(&histogram);
         let stop = percentile_stop(&measured.histogram, params.percentile);
         let blocks = if params.is_local() { measured.smoothed(&params)? } else { Vec::new() };

@@ -8,8 +8,8 @@ use super::{FilmParams, develop_row};
 use crate::allocate::{collected, filled};
 use crate::error::Result;
 use crate::image::{Lut, PixelFormat};
+use crate::parallel::prelude::*;
 use crate::scene::{Film, View};
-use rayon::prelude::*;
 
 /// Rows that are developed at a time.
 const ROWS: usize = 64;

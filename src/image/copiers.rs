@@ -3,9 +3,9 @@
 //! memory, a PCIe 5 bus carries 50. Knows no images and touches no memory itself.
 
 use crate::allocate::{self, THREAD_ROOM};
+use crate::parallel::prelude::*;
+use crate::parallel::{ThreadPool, ThreadPoolBuilder};
 use crate::thread_state::begin_own_thread;
-use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -51,7 +51,7 @@ impl Copiers {
         let build = || {
             let room = allocate::check_room(self.threads * THREAD_ROOM, "threads to copy frames with");
             room.inspect_err(|error| log::warn!("{error}")).ok()?;
-            let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
+            let builder = ThreadPoolBuilder::new().num_threads(self.threads);
             let built = builder.thread_name(|i| format!("bhr-copy-{i}")).start_handler(|_| begin_own_thread()).build();
             let pool = built.inspect_err(|error| log::warn!("no threads to copy frames with: {error}")).ok()?;
             // Once all threads run, they have the memory that a thread takes at its start, which bhr cannot refuse.

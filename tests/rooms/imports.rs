@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// From the lowest to the highest; rooms of one line do not import each other.
 const ROOMS: [&[&str]; 16] = [
     &["error", "platform"],
-    &["allocate", "attempt", "deferred", "random", "recent", "thread_scope", "thread_state"],
+    &["allocate", "attempt", "deferred", "parallel", "random", "recent", "thread_scope", "thread_state"],
     &["physics"],
     &["emit", "image"],
     &["sky"],

@@ -11,7 +11,7 @@
 use super::{GRIDS, sigma};
 use crate::allocate::filled;
 use crate::error::Result;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Full width at half maximum over the standard deviation: sqrt(8 ln 2).
 const FWHM: f64 = 2.354_820_045_030_949;

@@ -18,9 +18,9 @@
 
 use crate::allocate::filled;
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use crate::scene::Optics;
 use crate::scene::film::MOST_GHOSTS;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The share of all light that `flare` = 1 takes.

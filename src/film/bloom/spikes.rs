@@ -22,8 +22,8 @@
 use super::{GRIDS, MOST_SCATTERED};
 use crate::allocate::filled;
 use crate::error::Result;
+use crate::parallel::prelude::*;
 use crate::scene::Optics;
-use rayon::prelude::*;
 
 /// The exponentials that a line's kernel is made of, and how much shorter each is than the one before.
 pub const SPIKE_TERMS: usize = 4;
