@@ -4,8 +4,10 @@
 
 import { loaded, type Source } from "./load.js";
 import { link as linkOf, settingsOf } from "./link.js";
+import type { Crossing, HoleInfo, Ray, Vector } from "./scene.js";
 import { merged, textOf, type Settings } from "./settings.js";
 import { CpuTracer, GpuTracer, type Adapter, type Image, type Pixels, type Stats, type Traces } from "./tracers.js";
+import { settingsOfText } from "./written.js";
 
 export type { Settings } from "./settings.js";
 export type { Adapter, Image, Pixels, Stats } from "./tracers.js";
@@ -22,11 +24,48 @@ export interface Options {
     worker?: () => Worker;
 }
 
+/** How a frame is made. */
+export interface FrameOptions {
+    /**
+     * Ends the frame early: its promise rejects with the `code` CANCELLED. WebGPU ends between two steps of a frame; a
+     * frame of the CPU tracer is finished all the same, and not shown.
+     */
+    signal?: AbortSignal | undefined;
+}
+
+/** How a frame in a canvas is made. */
+export interface CanvasOptions extends FrameOptions {
+    /** The pixels of the canvas from this frame on, until which it keeps its picture; by default `canvas.width`. */
+    width?: number | undefined;
+    /** Likewise. */
+    height?: number | undefined;
+}
+
+/** A ray of light, followed back from the observer: bhr.h's BhrRay, what it hits as BhrHit, and its path. */
+export interface TracedRay extends Ray {
+    /** Where it ends: behind the horizon, on the sky, or nowhere within `quality.max_steps`. */
+    fate: "captured" | "escaped" | "unresolved" | "invalid";
+    /** Integration steps. */
+    steps: number;
+    /** Asymptotic, unit, scene axes; 0 unless escaped. */
+    sky_direction: Vector;
+    /** g = nu(camera) / nu(at infinity); NaN unless escaped. */
+    sky_redshift: number;
+    /** Spin 0: orbit angle to infinity, or to the horizon, radians; with spin NaN. */
+    swept_angle: number;
+    /** Those of the equatorial plane, in order along the ray. */
+    crossings: Crossing[];
+    /** x, y, z, t of each of up to 2048 points, in scene axes and lengths, from the observer on (bhr_trace_path). */
+    path: Float64Array;
+}
+
 /** A black hole, with what is about it, and a tracer that shows it. */
 export class BlackHole {
     /** Resolves with an error when the device is lost: make another one then, with these settings. */
     readonly lost: Promise<Error>;
     private settings: Settings = {};
+    /** The options of the next frame in the canvas. */
+    private wanted: CanvasOptions = {};
     private last: Promise<unknown> = Promise.resolve();
     private next: Promise<void> | undefined;
 
@@ -89,46 +128,78 @@ export class BlackHole {
     }
 
     /**
-     * Shows the scene in the canvas, in as many pixels as the canvas has (`canvas.width`, `canvas.height`). Resolves
-     * when the frame is there. While a frame is under way, further calls have one more frame made, of the scene as it
-     * is when that begins.
+     * Shows the scene in the canvas, in as many pixels as the canvas has (`canvas.width`, `canvas.height`) or as the
+     * options ask for. Resolves when the frame is there. While a frame is under way, further calls have one more frame
+     * made, of the scene as it is when that begins, and with the last call's options.
      */
-    render(): Promise<void> {
+    render(options: CanvasOptions = {}): Promise<void> {
         const canvas = this.canvas;
         if (canvas === undefined) {
             return Promise.reject(new TypeError("there is no canvas: create it with one, or ask for an image"));
         }
+        const { width = canvas.width, height = canvas.height } = options;
+        const wrong = mistakeIn(width, height);
+        if (wrong !== undefined) {
+            return Promise.reject(wrong);
+        }
+        this.wanted = options;
         this.next ??= this.after(() => {
             this.next = undefined;
-            return this.traces.paint(textOf(this.settings), canvas);
+            const { width = canvas.width, height = canvas.height, signal } = this.wanted;
+            return this.traces.paint(textOf(this.settings), canvas, [width, height], signal);
         });
         return this.next;
     }
 
     /** The frame in memory, in 8 bits a channel. */
-    async image(width: number, height: number): Promise<ImageData> {
-        const { pixels } = await this.pixels(width, height, "rgba8");
+    async image(width: number, height: number, options: FrameOptions = {}): Promise<ImageData> {
+        const { pixels } = await this.pixels(width, height, "rgba8", options);
         return new ImageData(pixels as Uint8ClampedArray<ArrayBuffer>, width, height);
     }
 
     /** The frame's light before the film: linear, premultiplied, in floats; red, green, blue, alpha of each pixel. */
-    async light(width: number, height: number): Promise<Float32Array> {
-        return (await this.pixels(width, height, "rgba32f")).pixels as Float32Array;
+    async light(width: number, height: number, options: FrameOptions = {}): Promise<Float32Array> {
+        return (await this.pixels(width, height, "rgba32f", options)).pixels as Float32Array;
     }
 
-    private pixels(width: number, height: number, format: Pixels): Promise<Image> {
-        for (const [name, side] of [["width", width], ["height", height]] as const) {
-            if (!Number.isInteger(side) || side < 1 || side > 0xffffffff) {
-                return Promise.reject(new RangeError(`${name} is ${side}; it must be a whole number from 1 on`));
-            }
+    /**
+     * The ray through a position in pixels of a frame of such a size, traced at once in double precision: (0, 0) is the
+     * upper left corner, (0.5, 0.5) the middle of the first pixel. Throws bhr.h's messages.
+     */
+    ray(x: number, y: number, width: number, height: number): TracedRay {
+        const wrong = mistakeIn(width, height);
+        if (wrong !== undefined) {
+            throw wrong;
+        }
+        return this.wasm.tracedRay(textOf(this.settings), 0, x, y, width, height) as TracedRay;
+    }
+
+    /** Numbers about the hole and the camera's observer, as they are set: bhr.h's BhrHoleInfo. */
+    info(): HoleInfo {
+        return this.wasm.holeInfo(textOf(this.settings), 0) as HoleInfo;
+    }
+
+    private async pixels(width: number, height: number, format: Pixels, { signal }: FrameOptions): Promise<Image> {
+        const wrong = mistakeIn(width, height);
+        if (wrong !== undefined) {
+            throw wrong;
         }
         const text = textOf(this.settings);
-        return this.after(() => this.traces.image(text, width, height, format));
+        return this.after(() => this.traces.image(text, [width, height], format, signal));
     }
 
     /** The text of the scene, as scene files have it, with every field (docs/scenes.md). */
     text(): string {
         return this.wasm.wholeScene(textOf(this.settings), 0);
+    }
+
+    /**
+     * Sets all that a scene file says, in place of what was set; of what moves in it, how it is at 0 s. Throws for what
+     * is no scene, or names files, and changes nothing.
+     */
+    read(text: string): this {
+        this.settings = settingsOfText(this.wasm.wholeScene(text, 0));
+        return this;
     }
 
     /** What differs from a new scene, as the readable part of an address behind "#". */
@@ -160,4 +231,11 @@ export class BlackHole {
         this.last = done.catch(() => undefined);
         return done;
     }
+}
+
+/** The mistake in a frame's size, if there is one. */
+function mistakeIn(width: number, height: number): RangeError | undefined {
+    const sides = Object.entries({ width, height });
+    const wrong = sides.find(([, side]) => !Number.isInteger(side) || side < 1 || side > 0xffffffff);
+    return wrong && new RangeError(`${wrong[0]} is ${wrong[1]}; it must be a whole number from 1 on`);
 }

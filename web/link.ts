@@ -2,53 +2,11 @@
 // link.ts -- scenes as parts of addresses: "v=1&hole.spin=0.9&camera.position=0,26,2.5". Only what differs from a new
 // scene is in it. `v` says which version's defaults are meant: tests/web/defaults-1.txt has those of version 1.
 
+import { LISTS, numberOf, valuesOf } from "./written.js";
 import { isTable, type Settings, type Table, type Value } from "./settings.js";
 
 /** The version that is written, and the newest that is read. */
 const VERSION = 1;
-
-/** The names of lists of structs. */
-const LISTS = ["volumes", "hot_spots"];
-
-/** The values of a new scene, by their names in links. */
-type Defaults = Map<string, Value>;
-
-/**
- * The values of a text with every field, by names as links have them: "hole.spin", and "volumes.shape" for those of any
- * volume.
- */
-function valuesOf(text: string): Defaults {
-    const found: Defaults = new Map();
-    let section = "";
-    for (const line of text.split("\n")) {
-        const title = /^\[+([a-z_.]+)\]+$/.exec(line);
-        const pair = /^([a-z_]+) = (.*)$/.exec(line);
-        if (title?.[1] !== undefined) {
-            section = `${title[1]}.`;
-        } else if (pair?.[1] !== undefined && pair[2] !== undefined) {
-            found.set(section + pair[1], valueOf(pair[2]));
-        }
-    }
-    return found;
-}
-
-/** A value of the text that the tracer writes. */
-function valueOf(text: string): Value {
-    const special: Record<string, number> = { nan: NaN, inf: Infinity, "-inf": -Infinity };
-    if (text.startsWith("[") || text.startsWith('"')) {
-        return JSON.parse(text.replace(/\b(nan|inf)\b/g, "null")) as Value;
-    }
-    if (text === "true" || text === "false") {
-        return text === "true";
-    }
-    return special[text] ?? numberOf(text);
-}
-
-/** Integers beyond those of doubles keep all their digits. */
-function numberOf(text: string): number | bigint {
-    const number = Number(text);
-    return /^-?\d+$/.test(text) && !Number.isSafeInteger(number) ? BigInt(text) : number;
-}
 
 function isSame(one: Value | undefined, other: Value): boolean {
     if (Array.isArray(one) && Array.isArray(other)) {

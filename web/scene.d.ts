@@ -806,3 +806,70 @@ export interface Region {
      */
     y: number;
 }
+
+/** Numbers about the hole and the camera's observer. Lengths are in scene units; what is not defined is NaN. */
+export interface HoleInfo {
+    /** r+ = M + sqrt(M^2 - a^2). */
+    horizon_radius: number;
+    /** 2 M, at every spin. */
+    ergosphere_equatorial_radius: number;
+    /** Equatorial circular photon orbit towards +ph. */
+    photon_orbit_prograde: number;
+    /** Equatorial circular photon orbit towards -ph. */
+    photon_orbit_retrograde: number;
+    /** Innermost stable circular orbit of matter towards +ph. */
+    isco_prograde: number;
+    /** Innermost stable circular orbit of matter towards -ph. */
+    isco_retrograde: number;
+    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
+    critical_impact_parameter: number;
+    /**
+     * Spin 0: angular radius of the shadow as the camera's observer sees it, radians; NaN with spin.
+     * @unit rad
+     */
+    shadow_angular_radius: number;
+    /** Boyer-Lindquist r of the camera. */
+    camera_radius: number;
+    /** d tau / d t, the rate of the clock of the camera's observer; t is the time of BhrCamera.chart. */
+    camera_time_rate: number;
+    /** r- = M - sqrt(M^2 - a^2), down to which the inside of a spinning hole is known; 0 without spin. */
+    inner_horizon_radius: number;
+}
+
+/** A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION. */
+export interface Ray {
+    /** Scene axes and lengths. */
+    position: Vector;
+    /**
+     * The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components are
+     * along the frame that Directions, above, gives, in the chart of the context's camera.
+     */
+    direction: Vector;
+    /**
+     * nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies the hit's
+     * redshifts.
+     */
+    frequency_ratio: number;
+}
+
+/** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
+export interface Crossing {
+    /**
+     * Boyer-Lindquist r, scene lengths.
+     * @unit scene length
+     */
+    radius: number;
+    /** Boyer-Lindquist ph in the chart, (-pi, pi], of rays in chart RAIN too. */
+    azimuth: number;
+    /**
+     * g = nu(camera) / nu(emitter on the disk's circular orbit); inside the ISCO that of falling matter with "plunges",
+     * else NaN.
+     */
+    redshift: number;
+    /**
+     * Coordinate time since the photon left, scene lengths; NaN from inside the horizon. In chart RAIN: rain time T at
+     * the ray's begin less the coordinate time t at which the photon left.
+     * @unit scene length
+     */
+    delay: number;
+}

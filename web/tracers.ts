@@ -37,13 +37,16 @@ export interface Stats {
     auto_ev: number;
 }
 
-/** A tracer. */
+/** Width and height, in pixels. */
+export type Size = readonly [number, number];
+
+/** A tracer. A frame that its signal ends rejects with the `code` CANCELLED. */
 export interface Traces {
     readonly adapter: Adapter;
     readonly stats: Stats;
     readonly lost: Promise<Error>;
-    paint(scene: string, canvas: HTMLCanvasElement): Promise<void>;
-    image(scene: string, width: number, height: number, format: Pixels): Promise<Image>;
+    paint(scene: string, canvas: HTMLCanvasElement, size: Size, signal?: AbortSignal): Promise<void>;
+    image(scene: string, size: Size, format: Pixels, signal?: AbortSignal): Promise<Image>;
     loseDevice(): void;
     end(): void;
 }
@@ -88,13 +91,13 @@ export class GpuTracer implements Traces {
         return gpu;
     }
 
-    async paint(scene: string, canvas: HTMLCanvasElement): Promise<void> {
-        await unlessEnded(this.tracer.paint(scene, 0, canvas));
+    async paint(scene: string, canvas: HTMLCanvasElement, [width, height]: Size, signal?: AbortSignal): Promise<void> {
+        await unlessEnded(this.tracer.paint(scene, 0, canvas, width, height, signal));
         this.stats = this.tracer.stats() as Stats;
     }
 
-    async image(scene: string, width: number, height: number, format: Pixels): Promise<Image> {
-        const bytes = await unlessEnded(this.tracer.image(scene, 0, width, height, format === "rgba32f"));
+    async image(scene: string, [width, height]: Size, format: Pixels, signal?: AbortSignal): Promise<Image> {
+        const bytes = await unlessEnded(this.tracer.image(scene, 0, width, height, format === "rgba32f", signal));
         this.stats = this.tracer.stats() as Stats;
         return pixelsOf(bytes, format);
     }
@@ -147,17 +150,21 @@ export class CpuTracer implements Traces {
         return new CpuTracer(worker, answer.adapter, answer.stats);
     }
 
-    async paint(scene: string, canvas: HTMLCanvasElement): Promise<void> {
-        const { width, height } = canvas;
-        const { pixels } = await this.image(scene, width, height, "rgba8");
+    async paint(scene: string, canvas: HTMLCanvasElement, size: Size, signal?: AbortSignal): Promise<void> {
+        const [width, height] = size;
+        const { pixels } = await this.image(scene, size, "rgba8", signal);
         const context = canvas.getContext("2d");
         if (context === null) {
             throw new Error("the canvas has another context than the CPU tracer's, which is 2d");
         }
+        if (canvas.width !== width || canvas.height !== height) {
+            [canvas.width, canvas.height] = [width, height];
+        }
         context.putImageData(new ImageData(pixels as Uint8ClampedArray<ArrayBuffer>, width, height), 0, 0);
     }
 
-    async image(scene: string, width: number, height: number, format: Pixels): Promise<Image> {
+    async image(scene: string, [width, height]: Size, format: Pixels, signal?: AbortSignal): Promise<Image> {
+        check(signal);
         const answer = await new Promise<Answer>((done, failed) => {
             this.waiting = { done, failed };
             this.worker.postMessage({ kind: "image", scene, width, height, format } satisfies Order);
@@ -165,6 +172,7 @@ export class CpuTracer implements Traces {
         if (answer.kind !== "image") {
             throw failure(answer);
         }
+        check(signal);
         this.stats = answer.stats;
         return pixelsOf(answer.bytes, format);
     }
@@ -186,6 +194,13 @@ export class CpuTracer implements Traces {
         if (waiting !== undefined) {
             how(waiting);
         }
+    }
+}
+
+/** Throws once the signal is aborted, as the module does. */
+function check(signal: AbortSignal | undefined): void {
+    if (signal?.aborted) {
+        throw Object.assign(new Error("the page's AbortSignal cancelled the frame"), { code: "CANCELLED" });
     }
 }
 

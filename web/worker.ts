@@ -28,7 +28,7 @@ async function answer(order: Order): Promise<Answer> {
         throw new Error("no tracer was started");
     }
     const { scene, width, height, format } = order;
-    const bytes = await unlessEnded(tracer.image(scene, 0, width, height, format === "rgba32f"));
+    const bytes = await unlessEnded(tracer.image(scene, 0, width, height, format === "rgba32f", undefined));
     return { kind: "image", bytes, stats: tracer.stats() as Stats };
 }
 

@@ -123,6 +123,7 @@ impl TryFrom<BhrQuality> for Quality {
             shares_kernels: None,
             anticipates: None,
             refines: true,
+            edges_later: false,
             keep_light: None,
             map_sampler: None,
         };

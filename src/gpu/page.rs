@@ -3,14 +3,27 @@
 //! Frames go straight into the textures of canvases.
 
 use super::device::adapter::{Adapter, device_descriptor};
+use super::device::texture::{SCREEN, Texture, TextureKind};
 use super::device::wgpu_device::Device;
-use super::frame::plan::setup::FrameTarget;
+use super::frame::plan::setup::{FrameTarget, Setup};
+use super::frame::submission::delivery::Delivery;
 use super::frame::tracer::GpuTracer;
-use super::kernel::variant::StoredFormat;
+use super::kernel::key::KernelKind;
+use super::kernel::variant::{PixelTarget, StoredFormat};
+use crate::emit::streaks::Streaks;
 use crate::error::{Error, ErrorKind, Result};
+use crate::scene::Scene;
+use crate::sky::index::StarIndex;
+use crate::sky::milky_way::Drawing;
+use crate::tracer::FrameRequest;
+use js_sys::{Function, Promise};
 use std::future::poll_fn;
+use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Poll, Waker};
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen_futures::JsFuture;
+use wgpu::web_sys::HtmlCanvasElement;
 
 fn none(why: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::NoAdapter, format!("WebGPU: {why}"))
@@ -35,7 +48,111 @@ impl GpuTracer {
         let device = Device::of(&adapter, descriptor.required_limits, opened);
         Self::on(adapter, device)
     }
+
+    /// Makes what such a frame needs, for the host or `shown` in an image, a part in each of the page's tasks:
+    /// pipelines one after the other, so that the browser's GPU process is free between two; meanwhile the Milky Way,
+    /// the stars and the disk's streaks. `go_on` is asked before each pipeline. Errors: those of `go_on`, of
+    /// [`Self::begin`].
+    pub async fn make_ready(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        shown: bool,
+        go_on: &dyn Fn() -> Result<()>,
+    ) -> Result<Ready> {
+        let (pixels, delivery) = match shown {
+            true => (PixelTarget::SCREEN, Delivery::Image),
+            false => (self.planner().host_pixels(scene), Delivery::Host),
+        };
+        let setup = self.planner().set_up(scene, request, pixels)?;
+        let missing = self.kernels.missing(&self.kernels_of(scene, Some(&setup)));
+        let kernels = async {
+            for key in missing {
+                go_on()?;
+                self.kernels.get(key)?;
+                self.device.ran().await?;
+            }
+            Ok(())
+        };
+        // The browser makes pipelines beside the page's thread, which meanwhile draws.
+        let (kernels, stars) = both(kernels, drawn(scene, &setup)).await;
+        let stars = kernels.and(stars)?;
+        Ok(Ready { steps: self.steps(scene, request, &setup, None, &delivery)?.count(), _stars: stars })
+    }
+
+    /// Whether the kernel that refines edges is missing for such a frame in an image. The browser takes longer to make
+    /// it than all others, and a picture without it is nearly the same. Errors: as [`Self::begin`].
+    pub fn edges_are_late(&self, scene: &Scene, request: &FrameRequest) -> Result<bool> {
+        let setup = self.planner().set_up(scene, request, PixelTarget::SCREEN)?;
+        let missing = self.kernels.missing(&self.kernels_of(scene, Some(&setup)));
+        Ok(missing.iter().any(|key| matches!(key.kind, KernelKind::Refine(..))))
+    }
 }
+
+/// The stars; and what else a frame shows is drawn.
+async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
+    let mut left = if setup.variants.shade.milky_way { Drawing::begun()? } else { None };
+    while let Some(drawing) = left {
+        next_task().await;
+        left = drawing.draw(ROWS_A_TASK)?;
+    }
+    next_task().await;
+    let stars = scene.stars()?;
+    if setup.variants.shade.turbulent {
+        next_task().await;
+        Streaks::shared()?;
+    }
+    Ok(stars)
+}
+
+/// Until the page has done what else it has to do.
+async fn next_task() {
+    #[wasm_bindgen]
+    extern "C" {
+        #[wasm_bindgen(js_name = setTimeout)]
+        fn set_timeout(call: &Function);
+    }
+    let later = Promise::new(&mut |resolve, _| set_timeout(&resolve));
+    // A timer does not fail.
+    let _ = JsFuture::from(later).await;
+}
+
+/// Waits for both at once.
+async fn both<A, B>(one: impl Future<Output = A>, other: impl Future<Output = B>) -> (A, B) {
+    let (mut one, mut other) = (pin!(one), pin!(other));
+    let (mut first, mut second) = (None, None);
+    poll_fn(move |context| {
+        if first.is_none()
+            && let Poll::Ready(done) = one.as_mut().poll(context)
+        {
+            first = Some(done);
+        }
+        if second.is_none()
+            && let Poll::Ready(done) = other.as_mut().poll(context)
+        {
+            second = Some(done);
+        }
+        match (first.take(), second.take()) {
+            (Some(one), Some(other)) => Poll::Ready((one, other)),
+            left => {
+                (first, second) = left;
+                Poll::Pending
+            }
+        }
+    })
+    .await
+}
+
+/// A frame's needs, as far as they are made.
+pub struct Ready {
+    /// The number of steps that the frame will take.
+    pub steps: u64,
+    /// Kept while somebody has it.
+    _stars: Arc<StarIndex>,
+}
+
+/// Rows of the Milky Way's finest level that are drawn in one task: some 15 ms of a processor's.
+const ROWS_A_TASK: u32 = 32;
 
 impl Device {
     /// Until all that was submitted has run, or the device is gone, and the browser has told of all buffers whose
@@ -71,8 +188,11 @@ impl Device {
 /// A canvas of a page, whose textures frames are written into.
 pub struct Canvas {
     surface: wgpu::Surface<'static>,
+    element: HtmlCanvasElement,
     /// Width and height that it was configured for.
     size: Option<[u32; 2]>,
+    /// The last frame of several steps is in it.
+    kept: Option<Texture>,
 }
 
 /// A canvas' texture, until the page's task ends: then the browser shows it.
@@ -91,24 +211,62 @@ impl CanvasTexture {
         device.queue()?.present(self.texture);
         Ok(())
     }
+
+    /// [`Self::show`] of what is in a texture of its size. Errors: as there.
+    fn show_copy(self, device: &Device, of: &Texture) -> Result<()> {
+        let mut encoder = device.encoder("canvas")?;
+        let (from, to) = (of.clone_raw(), &self.texture.texture);
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), to.size());
+        device.submit(encoder)?;
+        self.show(device)
+    }
 }
 
 impl Canvas {
     /// Errors: `SurfaceLost` for a canvas that has another context.
-    pub fn new(tracer: &GpuTracer, element: wgpu::web_sys::HtmlCanvasElement) -> Result<Self> {
+    pub fn new(tracer: &GpuTracer, element: HtmlCanvasElement) -> Result<Self> {
         let instance =
             tracer.adapter().instance().ok_or_else(|| Error::internal("a page's adapter has an instance"))?;
         let surface = instance
-            .create_surface(wgpu::SurfaceTarget::Canvas(element))
+            .create_surface(wgpu::SurfaceTarget::Canvas(element.clone()))
             .map_err(|error| Error::new(ErrorKind::SurfaceLost, format!("the canvas: {error}")))?;
-        Ok(Self { surface, size: None })
+        Ok(Self { surface, element, size: None, kept: None })
     }
 
-    /// The texture for the next frame, of such a size. Errors: `SurfaceLost`; as [`Device::scoped`].
-    pub fn texture(&mut self, device: &Device, [width, height]: [u32; 2]) -> Result<CanvasTexture> {
-        if self.size != Some([width, height]) {
+    /// Whether it is the canvas of `element`.
+    pub fn is_of(&self, element: &HtmlCanvasElement) -> bool {
+        self.element == *element
+    }
+
+    /// A texture for a frame of such a size that takes several of the page's tasks, longer than the canvas' own lives.
+    /// Errors: as [`Device::scoped`].
+    pub fn kept(&mut self, device: &Device, size: [u32; 2]) -> Result<&Texture> {
+        let kept = match self.kept.take().filter(|kept| kept.size() == size) {
+            Some(kept) => kept,
+            None => {
+                let TextureKind { format, dimension } = SCREEN;
+                let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+                device.any_texture("canvas", format, dimension, size, [1, 1], usage)?
+            }
+        };
+        Ok(self.kept.insert(kept))
+    }
+
+    /// Shows what is in the texture that [`Self::kept`] gave. Errors: as [`Self::texture`].
+    pub fn show_kept(&mut self, device: &Device) -> Result<()> {
+        let Some(kept) = self.kept.take() else { return Err(Error::internal("no frame is kept for the canvas")) };
+        let shown = self.texture(device, kept.size()).and_then(|texture| texture.show_copy(device, &kept));
+        self.kept = Some(kept);
+        shown
+    }
+
+    /// The texture for the next frame, of such a size, which the canvas has from now on. Errors: `SurfaceLost`; as
+    /// [`Device::scoped`].
+    pub fn texture(&mut self, device: &Device, size: [u32; 2]) -> Result<CanvasTexture> {
+        let [width, height] = size;
+        if self.size != Some(size) || [self.element.width(), self.element.height()] != size {
             let config = wgpu::SurfaceConfiguration {
-                usage: wgpu::TextureUsages::STORAGE_BINDING,
+                usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_DST,
                 format: wgpu::TextureFormat::Rgba8Unorm,
                 width,
                 height,
@@ -119,7 +277,7 @@ impl Canvas {
                 color_space: wgpu::SurfaceColorSpace::Auto,
             };
             device.scoped("the canvas", |raw| self.surface.configure(raw, &config))?;
-            self.size = Some([width, height]);
+            self.size = Some(size);
         }
         use wgpu::CurrentSurfaceTexture::{Suboptimal, Success};
         match self.surface.get_current_texture() {

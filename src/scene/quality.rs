@@ -71,6 +71,10 @@ pub struct Quality {
     /// Whether pixels that edges run through get more rays. The host cannot choose this.
     #[doc(hidden)]
     pub refines: bool,
+    /// Whether pixels that edges run through are found, but get no more rays yet: for a page's first picture, while the
+    /// kernel that traces these is made. The host cannot choose this.
+    #[doc(hidden)]
+    pub edges_later: bool,
     /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. The host
     /// cannot choose this.
     #[doc(hidden)]
@@ -96,6 +100,7 @@ impl Default for Quality {
             shares_kernels: None,
             anticipates: None,
             refines: true,
+            edges_later: false,
             keep_light: None,
             map_sampler: None,
         }

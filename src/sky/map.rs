@@ -88,18 +88,9 @@ impl SkyMap {
 
     /// The map of a picture of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
     pub fn of_rows(size: [u32; 2], row: &RowReader<'_>) -> Result<Self> {
-        let tall = size[0].saturating_mul(4).max(TALL);
-        let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
-        let finest = [size[0].clamp(height, MAX_MAP_SIZE[0]), height];
-        let mut levels = vec![Level::new(&Source { size, row }, finest)?];
-        while let Some(last) = levels.last().filter(|level| level.size != [1, 1]) {
-            let read = |y: u32, out: &mut [[f32; 3]]| {
-                out.iter_mut().zip(last.row(y)).for_each(|(out, texel)| *out = unpack(*texel));
-            };
-            let next = Level::new(&Source { size: last.size, row: &read }, last.size.map(|side| (side / 2).max(1)))?;
-            levels.push(next);
-        }
-        Ok(Self { levels })
+        let mut growing = GrowingMap::new(size)?;
+        while !growing.grow(row, u32::MAX)? {}
+        Ok(growing.done())
     }
 
     pub fn levels(&self) -> &[Level] {
@@ -107,15 +98,68 @@ impl SkyMap {
     }
 }
 
+/// A map that is being made, some rows at a time.
+pub struct GrowingMap {
+    /// The picture's size.
+    size: [u32; 2],
+    /// The levels so far.
+    levels: Vec<Level>,
+    /// Rows of the last one that are made.
+    rows: u32,
+}
+
+impl GrowingMap {
+    /// The map of a picture of `size`, not 0, without a row so far. Errors: OUT_OF_MEMORY.
+    pub fn new(size: [u32; 2]) -> Result<Self> {
+        let tall = size[0].saturating_mul(4).max(TALL);
+        let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
+        let finest = [size[0].clamp(height, MAX_MAP_SIZE[0]), height];
+        Ok(Self { size, levels: vec![Level::empty(finest)?], rows: 0 })
+    }
+
+    /// Makes up to `count` more rows of a level; `row` reads the picture's, the same in each call. Returns whether the
+    /// map is complete. Errors: OUT_OF_MEMORY.
+    pub fn grow(&mut self, row: &RowReader<'_>, count: u32) -> Result<bool> {
+        let Some((level, finer)) = self.levels.split_last_mut() else { return Ok(true) };
+        let end = self.rows.saturating_add(count).min(level.size[1]);
+        match finer.last() {
+            None => level.fill(&Source { size: self.size, row }, self.rows..end)?,
+            Some(finer) => {
+                let read = |y: u32, out: &mut [[f32; 3]]| {
+                    out.iter_mut().zip(finer.row(y)).for_each(|(out, texel)| *out = unpack(*texel));
+                };
+                level.fill(&Source { size: finer.size, row: &read }, self.rows..end)?;
+            }
+        }
+        self.rows = end;
+        let size = level.size;
+        if end < size[1] || size == [1, 1] {
+            return Ok(end == size[1]);
+        }
+        self.levels.push(Level::empty(size.map(|side| (side / 2).max(1)))?);
+        self.rows = 0;
+        Ok(false)
+    }
+
+    /// The map, once it is complete.
+    pub fn done(self) -> SkyMap {
+        SkyMap { levels: self.levels }
+    }
+}
+
 impl Level {
-    /// The source's light, averaged over the solid angle of each texel.
-    fn new(source: &Source<'_>, size: [u32; 2]) -> Result<Self> {
-        let [width, height] = size.map(|side| side as usize);
-        let mut texels = filled(width * height, 0, "the texels of a sky map")?;
+    fn empty(size: [u32; 2]) -> Result<Self> {
+        Ok(Self { size, texels: filled(size[0] as usize * size[1] as usize, 0, "the texels of a sky map")? })
+    }
+
+    /// Some rows of the source's light, averaged over the solid angle of each texel.
+    fn fill(&mut self, source: &Source<'_>, rows: std::ops::Range<u32>) -> Result<()> {
+        let (size, width) = (self.size, self.size[0] as usize);
+        let texels = &mut self.texels[rows.start as usize * width..rows.end as usize * width];
         // Threads of their own: in a pool, one that waits for a map could come to wait for itself.
         let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
         let threads = cores.min(texels.len() / TEXELS_A_THREAD);
-        let bands = Mutex::new(texels.chunks_mut(BAND * width).zip((0_u32..).step_by(BAND)));
+        let bands = Mutex::new(texels.chunks_mut(BAND * width).zip((rows.start..).step_by(BAND)));
         let work = || -> Result<()> {
             let mut scratch = Scratch::new(source.size[0] as usize, width)?;
             loop {
@@ -129,7 +173,7 @@ impl Level {
             begin_own_thread();
             drop(work());
         };
-        let made = std::thread::scope(|scope| {
+        std::thread::scope(|scope| {
             for i in 1..threads {
                 let thread = std::thread::Builder::new().name(format!("bhr-sky-{i}"));
                 // Without memory for a thread, or without a thread, there are fewer: this one is enough.
@@ -139,8 +183,7 @@ impl Level {
                 }
             }
             work()
-        });
-        made.map(|()| Self { size, texels })
+        })
     }
 
     /// The texels of row `y`; empty past the last.
@@ -343,6 +386,24 @@ mod tests {
     }
 
     #[test]
+    fn a_map_that_grows_is_the_one_made_at_once() {
+        let size = [67, 31];
+        let row = |y: u32, out: &mut [[f32; 3]]| (0..).zip(out).for_each(|(x, out)| *out = pattern(x, y));
+        let mut growing = GrowingMap::new(size).unwrap();
+        let mut calls = 1;
+        while !growing.grow(&row, 5).unwrap() {
+            calls += 1;
+        }
+        // 31, 15, 7, 3, 1 and 1 rows, and 1 of one texel.
+        assert_eq!(calls, 7 + 3 + 2 + 4);
+        let (made, at_once) = (growing.done(), of_pattern(size));
+        assert_eq!(made.levels.len(), at_once.levels.len());
+        for (a, b) in made.levels.iter().zip(&at_once.levels) {
+            assert!(a.size == b.size && a.texels == b.texels, "{:?}", a.size);
+        }
+    }
+
+    #[test]
     fn packing_is_exact_to_nine_bits_and_takes_anything() {
         let mut largest = 0.0_f32;
         for i in 0..200_000_u32 {
@@ -486,7 +547,8 @@ mod tests {
             SkyMap::of_rows(size, &|_, out| (0..).zip(out).for_each(|(x, out)| *out = [(x % 2) as f32; 3])).unwrap();
         assert_eq!(map.levels()[0].size, [MAX_MAP_SIZE[0], 3]);
         assert!(map.levels()[0].row(1).iter().all(|texel| (unpack(*texel)[0] - 0.5).abs() < 2e-3));
-        let level = Level::new(&Source { size: [7, 5], row: &|y, out| out.fill([y as f32; 3]) }, [3, 2]).unwrap();
+        let mut level = Level::empty([3, 2]).unwrap();
+        level.fill(&Source { size: [7, 5], row: &|y, out| out.fill([y as f32; 3]) }, 0..2).unwrap();
         let edge = |y: f64| (PI * y / 5.0).cos();
         let upper = (1.0 * (edge(1.0) - edge(2.0)) + 2.0 * (edge(2.0) - edge(2.5))) / (1.0 - edge(2.5));
         assert!((f64::from(unpack(level.row(0)[1])[0]) / upper - 1.0).abs() < 2e-3);

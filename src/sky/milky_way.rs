@@ -6,9 +6,9 @@
 
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
-use super::map::SkyMap;
+use super::map::{GrowingMap, SkyMap};
 use crate::allocate::collected;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::file::decode_png;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::random::mix;
@@ -66,17 +66,45 @@ const CLOUD_FAINTER: f64 = 0.8;
 const CLOUD_DEPTH: f64 = 0.5;
 const CLOUD_SEED: u32 = 0x534b;
 
+static SHARED: OnceLock<SkyMap> = OnceLock::new();
+
 impl SkyMap {
     /// The Milky Way of this process, made at first use (0.1 to 0.3 s). Errors: OUT_OF_MEMORY.
     pub fn milky_way() -> Result<&'static Self> {
-        static SHARED: OnceLock<SkyMap> = OnceLock::new();
-        match SHARED.get() {
-            Some(map) => Ok(map),
-            None => {
-                let map = MilkyWay::decode()?.draw()?;
-                Ok(SHARED.get_or_init(|| map))
-            }
+        let mut left = Drawing::begun()?;
+        while let Some(drawing) = left {
+            left = drawing.draw(u32::MAX)?;
         }
+        SHARED.get().ok_or_else(|| Error::internal("the Milky Way is drawn, and is not there"))
+    }
+}
+
+/// The Milky Way while it is drawn.
+pub struct Drawing {
+    way: MilkyWay,
+    columns: Vec<Column>,
+    map: GrowingMap,
+}
+
+impl Drawing {
+    /// The drawing that [`SkyMap::milky_way`] waits for; `None`: it is complete. Errors: OUT_OF_MEMORY.
+    pub fn begun() -> Result<Option<Self>> {
+        if SHARED.get().is_some() {
+            return Ok(None);
+        }
+        let (way, width) = (MilkyWay::decode()?, MAP_SIZE[0]);
+        let columns = (0..width).map(|x| way.column((f64::from(x) + 0.5) / f64::from(width)));
+        let columns = collected(columns, "the columns of the Milky Way")?;
+        Ok(Some(Self { way, columns, map: GrowingMap::new(MAP_SIZE)? }))
+    }
+
+    /// Draws up to `rows` more rows. Returns what is left to draw; `None`: it is complete. Errors: OUT_OF_MEMORY.
+    pub fn draw(mut self, rows: u32) -> Result<Option<Self>> {
+        if !self.map.grow(&|y, out| self.way.row(&self.columns, y, out), rows)? {
+            return Ok(Some(self));
+        }
+        SHARED.get_or_init(|| self.map.done());
+        Ok(None)
     }
 }
 
@@ -119,23 +147,19 @@ impl MilkyWay {
         })
     }
 
-    fn draw(&self) -> Result<SkyMap> {
-        let [width, height] = MAP_SIZE;
-        let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
-        let columns = collected((0..width).map(|x| self.column(place(x, width))), "the columns of the Milky Way")?;
-        SkyMap::of_rows(MAP_SIZE, &|y, out| {
-            let v = place(y, height);
-            let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
-            let mut noise = RowNoise::new();
-            for (column, out) in columns.iter().zip(out) {
-                let outline_height = self.outline_height(column, v);
-                if outline_height > 0.0 {
-                    let [cos_ra, sin_ra] = column.right_ascension;
-                    let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
-                    *out = self.light(outline_height, self.to_galactic * towards, &mut noise).map(|c| c as f32);
-                }
+    /// A row of the map.
+    fn row(&self, columns: &[Column], y: u32, out: &mut [[f32; 3]]) {
+        let v = (f64::from(y) + 0.5) / f64::from(MAP_SIZE[1]);
+        let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
+        let mut noise = RowNoise::new();
+        for (column, out) in columns.iter().zip(out) {
+            let outline_height = self.outline_height(column, v);
+            if outline_height > 0.0 {
+                let [cos_ra, sin_ra] = column.right_ascension;
+                let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
+                *out = self.light(outline_height, self.to_galactic * towards, &mut noise).map(|c| c as f32);
             }
-        })
+        }
     }
 
     fn column(&self, u: f64) -> Column {

@@ -14,7 +14,7 @@ pub mod galaxy;
 pub mod index;
 pub mod procedural;
 mod field;
-mod milky_way;
+pub mod milky_way;
 pub(crate) mod stars;
 
 pub use field::StarField;

@@ -8,9 +8,11 @@
 mod message;
 mod numbers;
 mod text;
+mod queries;
 mod tracer;
 
 pub use message::on_end;
+pub use queries::{hole_info, traced_ray};
 pub use text::{check_scene, default_scene, whole_scene};
 pub use tracer::Tracer;
 

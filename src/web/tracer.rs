@@ -7,15 +7,16 @@ use super::numbers;
 use super::text::scene_of;
 use crate::capi::scene_file::Moment;
 use crate::cpu::CpuTracer;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{Canvas, CanvasTexture, FrameTarget, GpuTracer};
 use crate::image::PixelFormat;
 use crate::platform::Instant;
+use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, StatsBoard, Tile, TileSink};
 use js_sys::Object;
 use std::collections::VecDeque;
 use wasm_bindgen::prelude::wasm_bindgen;
-use web_sys::HtmlCanvasElement;
+use web_sys::{AbortSignal, HtmlCanvasElement};
 
 /// Steps under way at once: one is read while the next runs.
 const AHEAD: usize = 2;
@@ -29,7 +30,7 @@ enum Traces {
 #[wasm_bindgen]
 pub struct Tracer {
     /// Goes before the device that it belongs to.
-    canvas: Option<(HtmlCanvasElement, Canvas)>,
+    canvas: Option<Canvas>,
     traces: Traces,
     stats: StatsBoard,
 }
@@ -94,7 +95,7 @@ impl Tracer {
     }
 
     /// The frame of a scene's text, as packed rows of RGBA: bytes, or with `floats` numbers of 32 bits of the light
-    /// before the film. Throws the C API's messages.
+    /// before the film. A frame on the GPU ends early when `signal` is aborted. Throws the C API's messages.
     pub async fn image(
         &mut self,
         scene: String,
@@ -102,19 +103,52 @@ impl Tracer {
         width: u32,
         height: u32,
         floats: bool,
+        signal: Option<AbortSignal>,
     ) -> Result<Vec<u8>, js_sys::Error> {
         let format = if floats { PixelFormat::Rgba32F } else { PixelFormat::Rgba8Srgb };
-        self.try_image(&scene, seconds, [width, height], format).await.map_err(thrown)
+        let made = self.try_image(&scene, seconds, [width, height], format, &Aborts(signal)).await;
+        made.map_err(thrown)
     }
 
-    /// The frame of a scene's text in a canvas of its size, which has no other context. Throws the C API's messages.
-    pub async fn paint(&mut self, scene: String, seconds: f64, canvas: HtmlCanvasElement) -> Result<(), js_sys::Error> {
-        self.try_paint(&scene, seconds, canvas).await.map_err(thrown)
+    /// The frame of a scene's text in a canvas, which has no other context, and the frame's size from then on. Ends
+    /// early as `image`. Throws the C API's messages.
+    pub async fn paint(
+        &mut self,
+        scene: String,
+        seconds: f64,
+        canvas: HtmlCanvasElement,
+        width: u32,
+        height: u32,
+        signal: Option<AbortSignal>,
+    ) -> Result<(), js_sys::Error> {
+        self.try_paint(&scene, seconds, canvas, [width, height], &Aborts(signal)).await.map_err(thrown)
+    }
+}
+
+/// A page's wish that a frame end.
+struct Aborts(Option<AbortSignal>);
+
+impl Aborts {
+    /// Errors: CANCELLED.
+    fn check(&self) -> Result<()> {
+        match &self.0 {
+            Some(signal) if signal.aborted() => {
+                Err(Error::new(ErrorKind::Cancelled, "the page's AbortSignal cancelled the frame"))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
 impl Tracer {
-    async fn try_image(&mut self, text: &str, seconds: f64, size: [u32; 2], format: PixelFormat) -> Result<Vec<u8>> {
+    async fn try_image(
+        &mut self,
+        text: &str,
+        seconds: f64,
+        size: [u32; 2],
+        format: PixelFormat,
+        aborts: &Aborts,
+    ) -> Result<Vec<u8>> {
         let start = Instant::now();
         let (scene, request) = asked(text, seconds, size, format)?;
         let row_bytes = size[0] as usize * format.bytes_per_pixel();
@@ -133,68 +167,132 @@ impl Tracer {
         let stats = match &mut self.traces {
             Traces::Cpu(tracer) => tracer.render(&scene, &request, &mut sink, &mut |_| true)?,
             Traces::Gpu(tracer) => {
-                let traced = traced(tracer, &scene, &request, None, &mut sink).await;
-                traced.inspect_err(|_| tracer.forget())?
+                let _ready = tracer.make_ready(&scene, &request, false, &|| aborts.check()).await?;
+                in_tasks(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await?
             }
         };
         self.stats.publish(stats, start.elapsed());
         Ok(bytes)
     }
 
-    async fn try_paint(&mut self, text: &str, seconds: f64, element: HtmlCanvasElement) -> Result<()> {
-        let start = Instant::now();
-        let size = [element.width(), element.height()];
+    async fn try_paint(
+        &mut self,
+        text: &str,
+        seconds: f64,
+        element: HtmlCanvasElement,
+        size: [u32; 2],
+        aborts: &Aborts,
+    ) -> Result<()> {
         let (scene, request) = asked(text, seconds, size, PixelFormat::Rgba8Srgb)?;
-        let Traces::Gpu(tracer) = &mut self.traces else {
+        let Traces::Gpu(tracer) = &self.traces else {
             return Err(Error::unsupported("the CPU tracer paints no canvas: put its image there"));
         };
+        if tracer.edges_are_late(&scene, &request)? {
+            let mut first = scene.clone();
+            first.quality.edges_later = true;
+            self.paint_scene(&first, &request, &element, aborts).await?;
+        }
+        self.paint_scene(&scene, &request, &element, aborts).await
+    }
+
+    async fn paint_scene(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        element: &HtmlCanvasElement,
+        aborts: &Aborts,
+    ) -> Result<()> {
+        let start = Instant::now();
+        let Traces::Gpu(tracer) = &mut self.traces else { return Ok(()) };
+        let ready = tracer.make_ready(scene, request, true, &|| aborts.check()).await?;
         let canvas = match &mut self.canvas {
-            Some((of, canvas)) if *of == element => canvas,
-            place => &mut place.insert((element.clone(), Canvas::new(tracer, element)?)).1,
+            Some(canvas) if canvas.is_of(element) => canvas,
+            place => place.insert(Canvas::new(tracer, element.clone())?),
         };
-        let texture = canvas.texture(&tracer.device(), size)?;
-        let traced = traced(tracer, &scene, &request, Some(texture), &mut |_, _, _| Ok(())).await;
-        let stats = traced.inspect_err(|_| tracer.forget())?;
+        let (device, size) = (tracer.device(), [request.width, request.height]);
+        let stats = if ready.steps <= AHEAD as u64 {
+            let texture = canvas.texture(&device, size)?;
+            let traced = in_one_task(tracer, scene, request, texture).await;
+            traced.inspect_err(|_| tracer.forget())?
+        } else {
+            let target = FrameTarget::screen(canvas.kept(&device, size)?);
+            let stats = in_tasks(tracer, scene, request, target, &mut |_, _, _| Ok(()), aborts).await?;
+            canvas.show_kept(&device)?;
+            stats
+        };
         self.stats.publish(stats, start.elapsed());
         Ok(())
     }
 }
 
 /// The scene and the request of a frame. Errors: the C API's.
-fn asked(text: &str, seconds: f64, size: [u32; 2], format: PixelFormat) -> Result<(crate::scene::Scene, FrameRequest)> {
+fn asked(text: &str, seconds: f64, size: [u32; 2], format: PixelFormat) -> Result<(Scene, FrameRequest)> {
     let Moment { scene, region } = scene_of(text, seconds)?;
     let request = FrameRequest::checked(&scene, format, size, false, region)?;
     Ok((scene, request))
 }
 
-/// Traces a frame: into the texture of a canvas, whose steps are all submitted in this task, as the texture is the
-/// browser's after it; or to the sink, by a few steps at a time.
-async fn traced(
+/// Traces a frame of few steps into the texture of a canvas: all are submitted in this task, as the texture is the
+/// browser's after it.
+async fn in_one_task(
     tracer: &mut GpuTracer,
-    scene: &crate::scene::Scene,
+    scene: &Scene,
     request: &FrameRequest,
-    texture: Option<CanvasTexture>,
-    sink: &mut TileSink<'_>,
+    texture: CanvasTexture,
 ) -> Result<FrameStats> {
     let device = tracer.device();
-    let target = texture.as_ref().map_or(FrameTarget::Host, CanvasTexture::target);
+    let mut frame = tracer.begin(scene, request, texture.target())?;
+    let mut stats = frame.stats();
+    let mut under_way = Vec::new();
+    while let Some(step) = tracer.submit(&mut frame)? {
+        under_way.push(step);
+    }
+    texture.show(&device)?;
+    device.ran().await?;
+    for step in under_way {
+        step.finish(&device, &mut stats, &mut |_, _, _| Ok(()))?;
+    }
+    stats.device_bytes = device.bytes();
+    Ok(stats)
+}
+
+/// Traces a frame by a few steps at a time, and ends before the next one where `aborts` says so. A frame that fails is
+/// forgotten.
+async fn in_tasks(
+    tracer: &mut GpuTracer,
+    scene: &Scene,
+    request: &FrameRequest,
+    target: FrameTarget<'_>,
+    sink: &mut TileSink<'_>,
+    aborts: &Aborts,
+) -> Result<FrameStats> {
+    let traced = try_in_tasks(tracer, scene, request, target, sink, aborts).await;
+    traced.inspect_err(|_| tracer.forget())
+}
+
+async fn try_in_tasks(
+    tracer: &mut GpuTracer,
+    scene: &Scene,
+    request: &FrameRequest,
+    target: FrameTarget<'_>,
+    sink: &mut TileSink<'_>,
+    aborts: &Aborts,
+) -> Result<FrameStats> {
+    let device = tracer.device();
     let mut frame = tracer.begin(scene, request, target)?;
     let mut stats = frame.stats();
-    let ahead = if texture.is_some() { usize::MAX } else { AHEAD };
     let mut under_way = VecDeque::new();
-    while under_way.len() < ahead
-        && let Some(step) = tracer.submit(&mut frame)?
-    {
-        under_way.push_back(step);
-    }
-    if let Some(texture) = texture {
-        texture.show(&device)?;
-    }
-    while let Some(step) = under_way.pop_front() {
+    loop {
+        while under_way.len() < AHEAD
+            && let Some(step) = tracer.submit(&mut frame)?
+        {
+            under_way.push_back(step);
+        }
+        let Some(step) = under_way.pop_front() else { break };
         device.ran().await?;
         step.finish(&device, &mut stats, sink)?;
-        if let Some(step) = tracer.submit(&mut frame)? {
-            under_way.push_back(step);
+        if !(frame.is_submitted() && under_way.is_empty()) {
+            aborts.check()?;
         }
     }
     stats.device_bytes = device.bytes();

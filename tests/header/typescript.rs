@@ -9,8 +9,20 @@ use crate::python_structs::{Kind, is_hidden, kind, translated};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-const STRUCTS: [&str; 8] =
-    ["BhrCamera", "BhrDisk", "BhrVolume", "BhrHotSpot", "BhrSky", "BhrFilm", "BhrQuality", "BhrRegion"];
+/// A scene's, and after them those of answers about it.
+const STRUCTS: [&str; 11] = [
+    "BhrCamera",
+    "BhrDisk",
+    "BhrVolume",
+    "BhrHotSpot",
+    "BhrSky",
+    "BhrFilm",
+    "BhrQuality",
+    "BhrRegion",
+    "BhrHoleInfo",
+    "BhrRay",
+    "BhrCrossing",
+];
 
 /// Enumerations that no field of these has, and bits of a function's.
 const WORDS: [&str; 4] = ["BhrView", "BhrPreset", "BhrPresetMatter", "BhrBackend"];

@@ -238,6 +238,112 @@ await test("a canvas shows the image's pixels", async () => {
     holds(found.over === 0, `${found.over} of ${found.pixels} pixels differ, by up to ${found.most}`);
 });
 
+await test("a canvas takes the size and the signal of a frame, and keeps its picture until the next one", async () => {
+    const found = await page.evaluate(async () => {
+        const place = document.createElement("canvas");
+        [place.width, place.height] = [40, 30];
+        const one = await bhr.BlackHole.create(place);
+        one.set({ hole: { spin: 0.4 } });
+        // The first frame comes before its edges are refined, and then again.
+        await one.render({ width: 64, height: 36 });
+        const sizes = [[place.width, place.height]];
+        await one.render();
+        sizes.push([place.width, place.height]);
+        const code = async (work) => work().then(() => "done", (error) => error.code ?? error.message);
+        const many = { quality: { samples_per_pixel: 256 } };
+        const stop = new AbortController();
+        const long = code(() => one.set(many).render({ width: 96, height: 54, signal: stop.signal }));
+        const cut = code(() => one.image(96, 54, { signal: stop.signal }));
+        setTimeout(() => stop.abort(), 50);
+        const codes = [await long, await cut];
+        sizes.push([place.width, place.height]);
+        // In steps, and at once: one picture.
+        one.set({ quality: { samples_per_pixel: 9 } });
+        await one.render({ width: 96, height: 54 });
+        const shown = new OffscreenCanvas(96, 54).getContext("2d");
+        shown.drawImage(place, 0, 0);
+        const [drawn, made] = [shown.getImageData(0, 0, 96, 54), await one.image(96, 54)];
+        codes.push(await code(() => one.render({ width: 0.5 })), await code(() => one.light(-1, 4)));
+        const cpu = await bhr.BlackHole.create(null, { backend: "cpu" });
+        const late = new AbortController();
+        const slow = code(() => cpu.image(96, 54, { signal: late.signal }));
+        late.abort();
+        codes.push(await slow);
+        await Promise.all([cpu.destroy(), one.destroy()]);
+        return { sizes, codes, drawn: base64(drawn.data), made: base64(made.data) };
+    });
+    const { sizes, codes } = found;
+    holds(JSON.stringify(sizes) === "[[64,36],[64,36],[64,36]]", JSON.stringify(sizes));
+    holds(codes[0] === "CANCELLED" && codes[1] === "CANCELLED" && codes[4] === "CANCELLED", JSON.stringify(codes));
+    holds(/^width is 0\.5; /.test(codes[2]) && /^width is -1; /.test(codes[3]), JSON.stringify(codes));
+    isSame(difference(bytesOf(found.drawn), bytesOf(found.made)));
+});
+
+await test("a ray and the hole's numbers are those of bhr.h", async () => {
+    const found = await page.evaluate(() => {
+        hole.reset();
+        const [middle, beside] = [hole.ray(80, 45, 160, 90), hole.ray(1, 1, 160, 90)];
+        const { path, ...plain } = middle;
+        const info = hole.info();
+        const far = hole.set({ hole: { spin: 0.5 } }).info();
+        let message;
+        try {
+            hole.ray(NaN, 1, 160, 90);
+        } catch (error) {
+            message = error.message;
+        }
+        const names = [info, plain].map((one) => Object.keys(one));
+        return { plain, path: [...path.slice(0, 4), ...path.slice(-4)], beside: { ...beside, path: [] }, info, far, names,
+            message, points: path.length / 4 };
+    });
+    const fields = (name) => json.structs.find((one) => one.name === name).fields.map((field) => field.name)
+        .filter((name) => !/^(struct_size|reserved\d*|crossing_count)$/.test(name)).sort().join();
+    const [info, ray] = found.names.map((names) => names.sort().join());
+    holds(info === fields("BhrHoleInfo"), info);
+    const expected = [...fields("BhrRay").split(","), ...fields("BhrHit").split(",")].sort().join();
+    holds(ray === expected, ray);
+    holds(found.plain.fate === "captured" && found.beside.fate === "escaped", JSON.stringify(found.plain));
+    // At spin 0 the photon orbit is at 3 M, the ISCO at 6, and the shadow sqrt(27) M wide (Bardeen 1973).
+    const { photon_orbit_prograde: photons, isco_prograde: isco, critical_impact_parameter: critical } = found.info;
+    holds(photons === 3 && isco === 6 && Math.abs(critical - Math.sqrt(27)) < 1e-12, JSON.stringify(found.info));
+    holds(Math.abs(found.far.isco_prograde - 4.233002530) < 1e-8, `ISCO ${found.far.isco_prograde}`);
+    // From the observer to just outside the horizon.
+    const [x, y, z, t, ...last] = found.path;
+    holds(Math.hypot(x, y - 26, z - 2.5) < 1e-12 && t === 0, found.path.join());
+    const radius = Math.hypot(...last.slice(0, 3));
+    holds(found.points > 10 && radius > 1.99 && radius < 2.2 && last[3] < 0, `${found.points} points: ${found.path}`);
+    holds(Math.abs(Math.hypot(...found.beside.sky_direction) - 1) < 1e-12, JSON.stringify(found.beside));
+    holds(/must be finite|must lie within/.test(found.message), found.message);
+});
+
+await test("a scene file is read, in place of what was set", async () => {
+    const found = await page.evaluate(() => {
+        const scene = { hole: { spin: -0.3, axis: [0, 1, 0] }, preset: "physical", camera: { position: [9, 9, 9] },
+            volumes: [{ seed: 5n ** 27n }, { shape: "torus" }], hot_spots: [{}], effects: ["beaming"] };
+        const text = hole.reset().set(scene).text();
+        const same = hole.reset().set({ time: 5, film: { bloom: 0.1 } }).read(text).text() === text;
+        const linked = hole.load(hole.link()).text() === text;
+        const file = 'preset = "teaching"\n[hole]\nspin = 0.25\n[disk]\nouter_radius = 9\n';
+        const part = hole.read(file).scene;
+        const before = hole.text();
+        const wrong = ["[hole]\nspin = 2\n", "[sky]\nmap = \"a.png\"\n", "spin = [", "disk = false\n"].map((text) => {
+            try {
+                hole.read(text);
+                return "";
+            } catch (error) {
+                return error.message;
+            }
+        });
+        const none = hole.scene.disk;
+        return { same, linked, spin: part.hole.spin, outer: part.disk.outer_radius, wrong, none,
+            changed: before === hole.text() };
+    });
+    holds(found.same && found.linked, "the text is another one");
+    holds(found.spin === 0.25 && found.outer === 9 && found.none === false && !found.changed, JSON.stringify(found));
+    const expected = [/spin is 2; /, /a page has no files/, /./, /^$/];
+    found.wrong.forEach((message, i) => holds(expected[i].test(message), message));
+});
+
 await test("bad input gives the C API's message, and changes nothing", async () => {
     const found = await page.evaluate(async () => {
         const thrown = async (work) => {

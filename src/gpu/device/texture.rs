@@ -76,8 +76,8 @@ impl Device {
         self.any_texture(label, kind.format, kind.dimension, [width, height], [layers, levels], usage)
     }
 
-    /// `layers`: of an array, or the third side of a block.
-    fn any_texture(
+    /// `layers`: of an array, or the third side of a block. Errors: as [`Device::scoped`].
+    pub(in crate::gpu) fn any_texture(
         &self,
         label: &str,
         format: wgpu::TextureFormat,

@@ -155,9 +155,7 @@ impl GpuTracer {
             BesideSetup::new(&self.planner(), &self.device, scene, request, (outputs, pictured.then_some(&setup)))
         });
         let beside = beside.transpose()?;
-        let mut needed = if pictured { setup.kernels() } else { Vec::new() };
-        needed.extend(scene.shown_picture().into_iter().flat_map(|picture| level_kernels(&self.device, picture)));
-        needed.extend(takes_rows(scene).then(|| KernelKey::from(KernelKind::OccluderRows)));
+        let needed = self.kernels_of(scene, pictured.then_some(&setup));
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
         let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
@@ -219,8 +217,16 @@ impl GpuTracer {
         })
     }
 
+    /// The kernels of a frame, but for those of outputs beside its picture; `picture`: its setup, if it has one.
+    pub(in crate::gpu) fn kernels_of(&self, scene: &Scene, picture: Option<&Setup>) -> Vec<KernelKey> {
+        let mut needed = picture.map(Setup::kernels).unwrap_or_default();
+        needed.extend(scene.shown_picture().into_iter().flat_map(|picture| level_kernels(&self.device, picture)));
+        needed.extend(takes_rows(scene).then(|| KernelKey::from(KernelKind::OccluderRows)));
+        needed
+    }
+
     /// The steps in which the frame is made. Errors: UNSUPPORTED for rows that no kernel reaches.
-    fn steps(
+    pub(in crate::gpu) fn steps(
         &self,
         scene: &Scene,
         request: &FrameRequest,

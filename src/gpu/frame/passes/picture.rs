@@ -181,7 +181,7 @@ impl FrameBuffers {
                     software,
                 )
             };
-            let refining = if variants.shade.refines { Some(refine(kernels)?) } else { None };
+            let refining = if variants.refines { Some(refine(kernels)?) } else { None };
             Ok::<_, Error>(ShadeStages {
                 consumer: RecordConsumer::new(kernels, record_setup, software, take)?,
                 refining,

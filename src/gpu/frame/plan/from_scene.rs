@@ -97,6 +97,7 @@ impl Planner<'_> {
             film: if bloom.is_some() { FilmVariant::of_light() } else { developed },
             developed: bloom.is_some().then_some(developed),
             several_samples: samples > 1,
+            refines: scene.refines(request.transparent) && !scene.quality.edges_later,
             rows: target == PixelTarget::Rows,
         };
         let record_setup = self.record_setup(scene, &emitters, &lens, &settings, &request.region, projection);

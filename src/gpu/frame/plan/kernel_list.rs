@@ -27,7 +27,7 @@ impl Setup {
         };
         keys.push(shade(record_setup.source));
         keys.extend(deferred.map(shade));
-        if variants.shade.refines {
+        if variants.refines {
             let samples = (record_setup.sample_source(), record_setup.variant);
             keys.push(KernelKey::refine(samples, variants.shade, film));
         }

@@ -23,6 +23,8 @@ pub(in crate::gpu) struct ShadingVariants {
     /// The film of development, in frames with bloom.
     pub(in crate::gpu) developed: Option<FilmVariant>,
     pub(in crate::gpu) several_samples: bool,
+    /// Whether the kernel that refines pixels runs after those that find them.
+    pub(in crate::gpu) refines: bool,
     /// Whether pixels are written row by row, those for the host into its memory.
     pub(in crate::gpu) rows: bool,
 }
