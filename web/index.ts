@@ -163,6 +163,20 @@ export class BlackHole {
     }
 
     /**
+     * Gives the sky's flag "map" its picture: the whole sky, equirectangular, as bhr.h's bhr_set_sky_map has it;
+     * `undefined` takes it away. Set `sky: { flags: ["map"] }` to see it. A link does not hold it.
+     */
+    async setSkyMap(picture: ImageData | ImageBitmap | undefined): Promise<void> {
+        const pixels = picture instanceof ImageBitmap ? pixelsOf(picture) : picture;
+        return this.after(() => this.traces.setSkyMap(pixels));
+    }
+
+    /** Gives the film the LUT in the text of a .cube file; `undefined` takes it away. A link does not hold it. */
+    setFilmLut(cube: string | undefined): Promise<void> {
+        return this.after(() => this.traces.setFilmLut(cube));
+    }
+
+    /**
      * The ray through a position in pixels of a frame of such a size, traced at once in double precision: (0, 0) is the
      * upper left corner, (0.5, 0.5) the middle of the first pixel. Throws bhr.h's messages.
      */
@@ -194,11 +208,11 @@ export class BlackHole {
     }
 
     /**
-     * Sets all that a scene file says, in place of what was set; of what moves in it, how it is at 0 s. Throws for what
-     * is no scene, or names files, and changes nothing.
+     * Sets all that a scene file says, in place of what was set; of what moves in it, how it is after so many seconds.
+     * Throws for what is no scene, or names files, and changes nothing.
      */
-    read(text: string): this {
-        this.settings = settingsOfText(this.wasm.wholeScene(text, 0));
+    read(text: string, seconds = 0): this {
+        this.settings = settingsOfText(this.wasm.wholeScene(text, seconds));
         return this;
     }
 
@@ -231,6 +245,16 @@ export class BlackHole {
         this.last = done.catch(() => undefined);
         return done;
     }
+}
+
+/** The pixels of a picture of the browser's. */
+function pixelsOf(picture: ImageBitmap): ImageData {
+    const place = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+    if (place === null) {
+        throw new Error("the browser gives no place to draw the picture in");
+    }
+    place.drawImage(picture, 0, 0);
+    return place.getImageData(0, 0, picture.width, picture.height);
 }
 
 /** The mistake in a frame's size, if there is one. */

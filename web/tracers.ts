@@ -47,6 +47,8 @@ export interface Traces {
     readonly lost: Promise<Error>;
     paint(scene: string, canvas: HTMLCanvasElement, size: Size, signal?: AbortSignal): Promise<void>;
     image(scene: string, size: Size, format: Pixels, signal?: AbortSignal): Promise<Image>;
+    setSkyMap(picture: ImageData | undefined): Promise<void>;
+    setFilmLut(cube: string | undefined): Promise<void>;
     loseDevice(): void;
     end(): void;
 }
@@ -59,6 +61,11 @@ export function pixelsOf(bytes: Uint8Array, format: Pixels): Image {
             ? new Uint8ClampedArray(buffer, byteOffset, byteLength)
             : new Float32Array(buffer, byteOffset, byteLength / 4);
     return { pixels };
+}
+
+/** The bytes of a picture, which are not copied. */
+function bytesOf(picture: ImageData | undefined): Uint8Array | undefined {
+    return picture && new Uint8Array(picture.data.buffer, picture.data.byteOffset, picture.data.byteLength);
 }
 
 /** A promise with what settles it. */
@@ -100,6 +107,15 @@ export class GpuTracer implements Traces {
         const bytes = await unlessEnded(this.tracer.image(scene, 0, width, height, format === "rgba32f", signal));
         this.stats = this.tracer.stats() as Stats;
         return pixelsOf(bytes, format);
+    }
+
+    async setSkyMap(picture: ImageData | undefined): Promise<void> {
+        const { width = 0, height = 0 } = picture ?? {};
+        await unlessEnded(this.tracer.setSkyMap(bytesOf(picture), width, height));
+    }
+
+    async setFilmLut(cube: string | undefined): Promise<void> {
+        this.tracer.setFilmLut(cube);
     }
 
     loseDevice(): void {
@@ -165,16 +181,36 @@ export class CpuTracer implements Traces {
 
     async image(scene: string, [width, height]: Size, format: Pixels, signal?: AbortSignal): Promise<Image> {
         check(signal);
-        const answer = await new Promise<Answer>((done, failed) => {
-            this.waiting = { done, failed };
-            this.worker.postMessage({ kind: "image", scene, width, height, format } satisfies Order);
-        });
+        const answer = await this.ask({ kind: "image", scene, width, height, format });
         if (answer.kind !== "image") {
             throw failure(answer);
         }
         check(signal);
         this.stats = answer.stats;
         return pixelsOf(answer.bytes, format);
+    }
+
+    async setSkyMap(picture: ImageData | undefined): Promise<void> {
+        const { width = 0, height = 0 } = picture ?? {};
+        await this.take({ kind: "map", pixels: bytesOf(picture), width, height });
+    }
+
+    setFilmLut(cube: string | undefined): Promise<void> {
+        return this.take({ kind: "lut", cube });
+    }
+
+    private ask(order: Order): Promise<Answer> {
+        return new Promise((done, failed) => {
+            this.waiting = { done, failed };
+            this.worker.postMessage(order);
+        });
+    }
+
+    private async take(order: Order): Promise<void> {
+        const answer = await this.ask(order);
+        if (answer.kind !== "taken") {
+            throw failure(answer);
+        }
     }
 
     loseDevice(): void {

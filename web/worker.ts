@@ -8,11 +8,14 @@ import type { Tracer } from "./wasm/bhr.js";
 /** What the page asks for. */
 export type Order =
     | { kind: "start"; wasm: string | undefined }
+    | { kind: "map"; pixels: Uint8Array | undefined; width: number; height: number }
+    | { kind: "lut"; cube: string | undefined }
     | { kind: "image"; scene: string; width: number; height: number; format: Pixels };
 
 /** What comes of it. */
 export type Answer =
     | { kind: "started"; adapter: Adapter; stats: Stats }
+    | { kind: "taken" }
     | { kind: "image"; bytes: Uint8Array; stats: Stats }
     | { kind: "failed"; message: string; code: unknown };
 
@@ -26,6 +29,14 @@ async function answer(order: Order): Promise<Answer> {
     }
     if (tracer === undefined) {
         throw new Error("no tracer was started");
+    }
+    if (order.kind === "map") {
+        await unlessEnded(tracer.setSkyMap(order.pixels, order.width, order.height));
+        return { kind: "taken" };
+    }
+    if (order.kind === "lut") {
+        tracer.setFilmLut(order.cube);
+        return { kind: "taken" };
     }
     const { scene, width, height, format } = order;
     const bytes = await unlessEnded(tracer.image(scene, 0, width, height, format === "rgba32f", undefined));

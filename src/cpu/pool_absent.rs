@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Takes the place of `pool` in pages, which have one thread: rayon works on that of the caller.
+//! Takes the place of `pool` in pages, which have one thread.
 
 use crate::error::Result;
 

@@ -98,15 +98,16 @@ async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
     }
     next_task().await;
     let stars = scene.stars()?;
+    next_task().await;
     if setup.variants.shade.turbulent {
-        next_task().await;
         Streaks::shared()?;
+        next_task().await;
     }
     Ok(stars)
 }
 
 /// Until the page has done what else it has to do.
-async fn next_task() {
+pub async fn next_task() {
     #[wasm_bindgen]
     extern "C" {
         #[wasm_bindgen(js_name = setTimeout)]

@@ -56,34 +56,9 @@ impl SkyMap {
     /// The map of the host's picture, which is read before this returns; alpha does not count. Errors: INVALID_ARGUMENT
     /// for R32F; OUT_OF_MEMORY.
     pub fn new(image: &ImageRef<'_>) -> Result<Self> {
-        let size = [image.width(), image.height()];
-        let eight_bit = |order: [usize; 3]| {
-            let decoded: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
-            Self::of_rows(size, &move |y, out| {
-                for (out, pixel) in out.iter_mut().zip(image.row(y).as_chunks::<4>().0) {
-                    *out = order.map(|channel| decoded[usize::from(pixel[channel])]);
-                }
-            })
-        };
-        match image.format() {
-            PixelFormat::Rgba8Srgb => eight_bit([0, 1, 2]),
-            PixelFormat::Bgra8Srgb => eight_bit([2, 1, 0]),
-            PixelFormat::Rgba16F => Self::of_rows(size, &|y, out| {
-                let half = |low: u8, high: u8| half::f16::from_ne_bytes([low, high]).to_f32();
-                for (out, [r0, r1, g0, g1, b0, b1, ..]) in out.iter_mut().zip(image.row(y).as_chunks::<8>().0) {
-                    *out = [half(*r0, *r1), half(*g0, *g1), half(*b0, *b1)];
-                }
-            }),
-            PixelFormat::Rgba32F => Self::of_rows(size, &|y, out| {
-                for (out, pixel) in out.iter_mut().zip(image.row(y).as_chunks::<16>().0) {
-                    let channels = pixel.as_chunks::<4>().0;
-                    *out = std::array::from_fn(|c| channels.get(c).map_or(0.0, |bytes| f32::from_ne_bytes(*bytes)));
-                }
-            }),
-            format => Err(Error::argument(format!(
-                "equirect format is {format}; a sky map has colours: RGBA8_SRGB, BGRA8_SRGB, RGBA16F or RGBA32F"
-            ))),
-        }
+        let mut growing = GrowingMap::new([image.width(), image.height()])?;
+        while !growing.grow_from(image, u32::MAX)? {}
+        Ok(growing.done())
     }
 
     /// The map of a picture of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
@@ -139,6 +114,44 @@ impl GrowingMap {
         self.levels.push(Level::empty(size.map(|side| (side / 2).max(1)))?);
         self.rows = 0;
         Ok(false)
+    }
+
+    /// [`Self::grow`] by rows of the host's picture, the same in each call. Errors: as [`SkyMap::new`].
+    pub fn grow_from(&mut self, image: &ImageRef<'_>, count: u32) -> Result<bool> {
+        let mut eight_bit = |order: [usize; 3]| {
+            let decoded: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
+            let row = |y: u32, out: &mut [[f32; 3]]| {
+                for (out, pixel) in out.iter_mut().zip(image.row(y).as_chunks::<4>().0) {
+                    *out = order.map(|channel| decoded[usize::from(pixel[channel])]);
+                }
+            };
+            self.grow(&row, count)
+        };
+        match image.format() {
+            PixelFormat::Rgba8Srgb => eight_bit([0, 1, 2]),
+            PixelFormat::Bgra8Srgb => eight_bit([2, 1, 0]),
+            PixelFormat::Rgba16F => self.grow(
+                &|y, out| {
+                    let half = |low: u8, high: u8| half::f16::from_ne_bytes([low, high]).to_f32();
+                    for (out, [r0, r1, g0, g1, b0, b1, ..]) in out.iter_mut().zip(image.row(y).as_chunks::<8>().0) {
+                        *out = [half(*r0, *r1), half(*g0, *g1), half(*b0, *b1)];
+                    }
+                },
+                count,
+            ),
+            PixelFormat::Rgba32F => self.grow(
+                &|y, out| {
+                    for (out, pixel) in out.iter_mut().zip(image.row(y).as_chunks::<16>().0) {
+                        let channels = pixel.as_chunks::<4>().0;
+                        *out = std::array::from_fn(|c| channels.get(c).map_or(0.0, |bytes| f32::from_ne_bytes(*bytes)));
+                    }
+                },
+                count,
+            ),
+            format => Err(Error::argument(format!(
+                "equirect format is {format}; a sky map has colours: RGBA8_SRGB, BGRA8_SRGB, RGBA16F or RGBA32F"
+            ))),
+        }
     }
 
     /// The map, once it is complete.

@@ -20,7 +20,7 @@ pub(crate) mod stars;
 pub use field::StarField;
 pub use grid::under_grid;
 pub use index::StarIndex;
-pub use map::{Level, MAX_MAP_SIZE, SkyMap};
+pub use map::{GrowingMap, Level, MAX_MAP_SIZE, SkyMap};
 #[cfg(test)]
 pub use map::{limited, pack, unpack};
 pub use map_file::MapFile;

@@ -8,18 +8,23 @@ use super::text::scene_of;
 use crate::capi::scene_file::Moment;
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{Canvas, CanvasTexture, FrameTarget, GpuTracer};
-use crate::image::PixelFormat;
+use crate::gpu::{Canvas, CanvasTexture, FrameTarget, GpuTracer, next_task};
+use crate::image::{ImageRef, Layout, Lut, PixelFormat};
 use crate::platform::Instant;
 use crate::scene::Scene;
+use crate::sky::{GrowingMap, SkyMap};
 use crate::tracer::{FrameRequest, FrameStats, StatsBoard, Tile, TileSink};
 use js_sys::Object;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_sys::{AbortSignal, HtmlCanvasElement};
 
 /// Steps under way at once: one is read while the next runs.
 const AHEAD: usize = 2;
+
+/// Texels of a map that are made in one of the page's tasks: some 15 ms of a processor's.
+const TEXELS_A_TASK: u32 = 1 << 16;
 
 enum Traces {
     Gpu(Box<GpuTracer>),
@@ -32,6 +37,9 @@ pub struct Tracer {
     /// Goes before the device that it belongs to.
     canvas: Option<Canvas>,
     traces: Traces,
+    /// The picture of the sky flag MAP, and the film's table of colours.
+    map: Option<Arc<SkyMap>>,
+    lut: Option<Arc<Lut>>,
     stats: StatsBoard,
 }
 
@@ -41,7 +49,7 @@ impl Tracer {
     #[wasm_bindgen(js_name = onWebGpu)]
     pub async fn on_web_gpu() -> Result<Tracer, js_sys::Error> {
         let tracer = GpuTracer::of_page().await.map_err(thrown)?;
-        Ok(Self { canvas: None, traces: Traces::Gpu(Box::new(tracer)), stats: StatsBoard::default() })
+        Ok(Self::of(Traces::Gpu(Box::new(tracer))))
     }
 
     /// The CPU tracer, in double precision. Its frames take seconds, in which the thread does nothing else: it is for
@@ -49,7 +57,7 @@ impl Tracer {
     #[wasm_bindgen(js_name = onCpu)]
     pub fn on_cpu() -> Result<Tracer, js_sys::Error> {
         let tracer = CpuTracer::new(1).map_err(thrown)?;
-        Ok(Self { canvas: None, traces: Traces::Cpu(Box::new(tracer)), stats: StatsBoard::default() })
+        Ok(Self::of(Traces::Cpu(Box::new(tracer))))
     }
 
     /// The adapter.
@@ -92,6 +100,26 @@ impl Tracer {
             Traces::Gpu(tracer) => tracer.device().scoped("destroying the device", |raw| raw.destroy()).map_err(thrown),
             Traces::Cpu(_) => Ok(()),
         }
+    }
+
+    /// Gives the sky flag MAP its picture, packed rows of RGBA in 8 bits, or takes it away (bhr_set_sky_map), a part in
+    /// each of the page's tasks. Throws the messages of that function.
+    #[wasm_bindgen(js_name = setSkyMap)]
+    pub async fn set_sky_map(&mut self, pixels: Option<Vec<u8>>, width: u32, height: u32) -> Result<(), js_sys::Error> {
+        let map = match pixels {
+            Some(pixels) => Some(sky_map(&pixels, [width, height]).await.map_err(thrown)?),
+            None => None,
+        };
+        self.map = map.map(Arc::new);
+        Ok(())
+    }
+
+    /// Gives the film the LUT in the text of a .cube file, or takes it away (bhr_set_film_lut_file). Throws the
+    /// messages of that function.
+    #[wasm_bindgen(js_name = setFilmLut)]
+    pub fn set_film_lut(&mut self, cube: Option<String>) -> Result<(), js_sys::Error> {
+        self.lut = cube.map(|text| Lut::of_cube(&text)).transpose().map_err(thrown)?.map(Arc::new);
+        Ok(())
     }
 
     /// The frame of a scene's text, as packed rows of RGBA: bytes, or with `floats` numbers of 32 bits of the light
@@ -140,7 +168,29 @@ impl Aborts {
     }
 }
 
+/// The map of a picture.
+async fn sky_map(pixels: &[u8], [width, height]: [u32; 2]) -> Result<SkyMap> {
+    let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), pixels)?;
+    let mut growing = GrowingMap::new([width, height])?;
+    while !growing.grow_from(&image, (TEXELS_A_TASK / width.max(1)).max(1))? {
+        next_task().await;
+    }
+    Ok(growing.done())
+}
+
 impl Tracer {
+    fn of(traces: Traces) -> Self {
+        Self { canvas: None, traces, map: None, lut: None, stats: StatsBoard::default() }
+    }
+
+    /// The scene and the request of a frame. Errors: the C API's.
+    fn asked(&self, text: &str, seconds: f64, size: [u32; 2], format: PixelFormat) -> Result<(Scene, FrameRequest)> {
+        let Moment { mut scene, region } = scene_of(text, seconds)?;
+        (scene.sky_map, scene.film_lut) = (self.map.clone(), self.lut.clone());
+        let request = FrameRequest::checked(&scene, format, size, false, region)?;
+        Ok((scene, request))
+    }
+
     async fn try_image(
         &mut self,
         text: &str,
@@ -150,7 +200,7 @@ impl Tracer {
         aborts: &Aborts,
     ) -> Result<Vec<u8>> {
         let start = Instant::now();
-        let (scene, request) = asked(text, seconds, size, format)?;
+        let (scene, request) = self.asked(text, seconds, size, format)?;
         let row_bytes = size[0] as usize * format.bytes_per_pixel();
         let mut bytes = Vec::new();
         crate::image::probe(row_bytes as u64 * u64::from(size[1]))?;
@@ -183,7 +233,7 @@ impl Tracer {
         size: [u32; 2],
         aborts: &Aborts,
     ) -> Result<()> {
-        let (scene, request) = asked(text, seconds, size, PixelFormat::Rgba8Srgb)?;
+        let (scene, request) = self.asked(text, seconds, size, PixelFormat::Rgba8Srgb)?;
         let Traces::Gpu(tracer) = &self.traces else {
             return Err(Error::unsupported("the CPU tracer paints no canvas: put its image there"));
         };
@@ -223,13 +273,6 @@ impl Tracer {
         self.stats.publish(stats, start.elapsed());
         Ok(())
     }
-}
-
-/// The scene and the request of a frame. Errors: the C API's.
-fn asked(text: &str, seconds: f64, size: [u32; 2], format: PixelFormat) -> Result<(Scene, FrameRequest)> {
-    let Moment { scene, region } = scene_of(text, seconds)?;
-    let request = FrameRequest::checked(&scene, format, size, false, region)?;
-    Ok((scene, request))
 }
 
 /// Traces a frame of few steps into the texture of a canvas: all are submitted in this task, as the texture is the

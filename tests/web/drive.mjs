@@ -279,6 +279,51 @@ await test("a canvas takes the size and the signal of a frame, and keeps its pic
     isSame(difference(bytesOf(found.drawn), bytesOf(found.made)));
 });
 
+await test("a sky map and a LUT show what native bhr shows of them", async () => {
+    const cube = "LUT_3D_SIZE 2\n" + [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
+        const [red, green, blue] = [i & 1, i >> 1 & 1, i >> 2];
+        return `${0.2 + 0.6 * green} ${red} ${0.9 * blue}`;
+    }).join("\n") + "\n";
+    const settings = { sky: { flags: ["map"] }, disk: { outer_radius: 12 }, film: { bloom: 0.1 } };
+    const made = await page.evaluate(async ([cube, settings]) => {
+        const place = new OffscreenCanvas(96, 48);
+        const context = place.getContext("2d");
+        const picture = context.createImageData(96, 48);
+        picture.data.forEach((_, i, all) => {
+            const [x, y, channel] = [(i >> 2) % 96, Math.floor(i / 384), i & 3];
+            all[i] = channel === 3 ? 255 : (x * [5, 2, 7][channel] + y * [3, 9, 1][channel]) % 256;
+        });
+        context.putImageData(picture, 0, 0);
+        const blob = await place.convertToBlob({ type: "image/png" });
+        const found = { map: base64(new Uint8Array(await blob.arrayBuffer())), text: "", frames: [], wrong: [] };
+        for (const backend of ["webgpu", "cpu"]) {
+            const one = await bhr.BlackHole.create(null, { backend });
+            one.set(settings);
+            await one.setSkyMap(backend === "cpu" ? await createImageBitmap(blob) : picture);
+            await one.setFilmLut(cube);
+            found.text = one.text();
+            found.frames.push(base64((await one.image(64, 36)).data));
+            found.wrong.push(await one.setFilmLut("LUT_3D_SIZE 1\n").then(() => "taken", (error) => error.message));
+            await one.setSkyMap(undefined);
+            await one.setFilmLut(undefined);
+            found.frames.push(base64((await one.image(64, 36)).data));
+            await one.destroy();
+        }
+        return found;
+    }, [cube, settings]);
+    writeFileSync(join(scratch, "map.png"), bytesOf(made.map));
+    writeFileSync(join(scratch, "look.cube"), cube);
+    const text = made.text.replace("[sky]\n", '[sky]\nmap = "map.png"\n')
+        .replace("[film]\n", '[film]\nlut = "look.cube"\n');
+    for (const [i, backend] of ["vulkan", "cpu"].entries()) {
+        await rendered(`map ${backend}`, text, [64, 36], backend);
+        isSame(difference(bytesOf(made.frames[2 * i]), await pixelsOf(`map ${backend}`)));
+        const without = difference(bytesOf(made.frames[2 * i]), bytesOf(made.frames[2 * i + 1]));
+        holds(without.over > without.pixels / 2, "the map and the LUT show nothing");
+        holds(/^line 1: LUT_3D_SIZE is "1"; /.test(made.wrong[i]), made.wrong[i]);
+    }
+});
+
 await test("a ray and the hole's numbers are those of bhr.h", async () => {
     const found = await page.evaluate(() => {
         hole.reset();
@@ -293,8 +338,9 @@ await test("a ray and the hole's numbers are those of bhr.h", async () => {
             message = error.message;
         }
         const names = [info, plain].map((one) => Object.keys(one));
-        return { plain, path: [...path.slice(0, 4), ...path.slice(-4)], beside: { ...beside, path: [] }, info, far, names,
-            message, points: path.length / 4 };
+        const ends = [...path.slice(0, 4), ...path.slice(-4)];
+        const points = path.length / 4;
+        return { plain, path: ends, beside: { ...beside, path: [] }, info, far, names, message, points };
     });
     const fields = (name) => json.structs.find((one) => one.name === name).fields.map((field) => field.name)
         .filter((name) => !/^(struct_size|reserved\d*|crossing_count)$/.test(name)).sort().join();
@@ -324,6 +370,8 @@ await test("a scene file is read, in place of what was set", async () => {
         const same = hole.reset().set({ time: 5, film: { bloom: 0.1 } }).read(text).text() === text;
         const linked = hole.load(hole.link()).text() === text;
         const file = 'preset = "teaching"\n[hole]\nspin = 0.25\n[disk]\nouter_radius = 9\n';
+        const moves = hole.read("[camera]\nfov_y = { keys = [[0, 0.5], [2, 1.5]] }\n", 1);
+        const halfway = moves.scene.camera.fov_y;
         const part = hole.read(file).scene;
         const before = hole.text();
         const wrong = ["[hole]\nspin = 2\n", "[sky]\nmap = \"a.png\"\n", "spin = [", "disk = false\n"].map((text) => {
@@ -335,11 +383,12 @@ await test("a scene file is read, in place of what was set", async () => {
             }
         });
         const none = hole.scene.disk;
-        return { same, linked, spin: part.hole.spin, outer: part.disk.outer_radius, wrong, none,
+        return { same, linked, spin: part.hole.spin, outer: part.disk.outer_radius, wrong, none, halfway,
             changed: before === hole.text() };
     });
     holds(found.same && found.linked, "the text is another one");
     holds(found.spin === 0.25 && found.outer === 9 && found.none === false && !found.changed, JSON.stringify(found));
+    holds(Math.abs(found.halfway - 1) < 1e-9, `halfway between two keys fov_y is ${found.halfway}`);
     const expected = [/spin is 2; /, /a page has no files/, /./, /^$/];
     found.wrong.forEach((message, i) => holds(expected[i].test(message), message));
 });

@@ -24,7 +24,14 @@ impl FromFile for Lut {
     /// LUT of three dimensions, with the line; OUT_OF_MEMORY.
     fn from_file(path: &Path) -> Result<Self> {
         let text = load_text(path, MOST_BYTES)?;
-        parse(&text).map_err(|error| about("read", path, &error))
+        Self::of_cube(&text).map_err(|error| about("read", path, &error))
+    }
+}
+
+impl Lut {
+    /// The LUT in the text of a .cube file. Errors: IO, with the line; OUT_OF_MEMORY.
+    pub fn of_cube(text: &str) -> Result<Self> {
+        parse(text)
     }
 }
 
