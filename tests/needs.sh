@@ -91,6 +91,7 @@ missing_packages_of_all() {
     missing slurmctld slurmctld
     missing slurmd slurmd
     missing munge munged
+    missing firefox-esr firefox-esr
 }
 
 # The Debian packages of what is missing, one a line.
