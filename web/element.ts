@@ -21,6 +21,8 @@ declare global {
 const MOST_PIXELS = 2e6;
 /** Scene time that goes by in a second, unless rate says otherwise. */
 const RATE = 10;
+/** Milliseconds without a key or a turn of the wheel after which a reader has stopped moving. */
+const REST_MS = 300;
 /** Milliseconds after which readers are told that the first picture takes time. */
 const LONG_MS = 1000;
 
@@ -35,10 +37,10 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events
 [part=picture]:focus { outline: none; }
 [part=picture]:focus-visible { outline: 2px solid #7ab8ff; outline-offset: -2px; }
 [part=notice] { position: absolute; inset: auto 0 0 0; margin: 0 auto 0.75em; width: fit-content; box-sizing: border-box;
-    max-width: calc(100% - 1.5em); max-height: calc(100% - 1.5em); overflow: auto; padding: 0.5em 0.9em;
-    border-radius: 0.5em; background: rgb(20 22 28 / 88%); font: 0.875rem/1.4 system-ui, sans-serif;
-    overflow-wrap: anywhere; }
-[part=notice]:empty { display: none; }
+    max-width: calc(100% - 1.5em); padding: 0.5em 0.9em; border-radius: 0.5em; background: rgb(20 22 28 / 88%);
+    font: 0.875rem/1.4 system-ui, sans-serif; overflow-wrap: anywhere; pointer-events: none; }
+[part=notice] > span { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
+[part=notice][hidden] { display: none; }
 #help { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
 `;
 
@@ -53,8 +55,8 @@ const Base = globalThis.HTMLElement ?? (class {} as typeof HTMLElement);
  * moves the camera and `change` when that is over; `error`, an ErrorEvent.
  */
 export class BhrHole extends Base {
-    /** How elements that are made from now on make their black holes. */
-    static options: Options = {};
+    /** How elements that come into the page from now on make their black holes. */
+    static options: Options | Promise<Options> = {};
 
     private readonly picture: HTMLDivElement | undefined;
     private readonly notice: HTMLParagraphElement | undefined;
@@ -63,9 +65,15 @@ export class BhrHole extends Base {
     private defaults = "";
     /** The settings that the attributes mean, as they were set last. */
     private told: Settings | undefined;
+    /** Attributes that `show` was given before there was a black hole. */
+    private awaited: Readonly<Record<string, string>> | undefined;
+    /** The camera that the key Home goes back to. */
+    private home: Settings["camera"];
     private isPlaying = false;
     private lastTime: number | undefined;
     private isLoud = false;
+    /** Runs while a reader moves the camera. */
+    private moving: ReturnType<typeof setTimeout> | undefined;
 
     constructor() {
         super();
@@ -78,6 +86,9 @@ export class BhrHole extends Base {
         const notice = document.createElement("p");
         notice.setAttribute("part", "notice");
         notice.setAttribute("role", "status");
+        // Lists of names in a message may be long: the event has all of it.
+        notice.append(document.createElement("span"));
+        notice.hidden = true;
         const help = document.createElement("div");
         help.id = "help";
         help.textContent = HELP;
@@ -107,6 +118,15 @@ export class BhrHole extends Base {
         this.describe();
     }
 
+    /** Shows what attributes would mean, in place of all that was set; those of the element stay as they are. */
+    show(attributes: Readonly<Record<string, string>>): void {
+        const hole = this.hole;
+        this.awaited = hole === undefined ? attributes : undefined;
+        if (hole !== undefined) {
+            this.attempt(hole, () => this.replaceBy(hole, attributes));
+        }
+    }
+
     connectedCallback(): void {
         // One that is moved within the page stays as it is.
         if (this.frames !== undefined || this.picture === undefined) {
@@ -114,11 +134,9 @@ export class BhrHole extends Base {
         }
         this.over = new AbortController();
         const { signal } = this.over;
-        const own = (this.constructor as typeof BhrHole).options;
-        const backend = this.getAttribute("backend") as Options["backend"];
-        const options = { shared: true, ...own, ...(backend === null ? {} : { backend }) } as Options;
+        const options = this.options();
         const frames = new Frames(this.picture, options, {
-            started: (hole, before) => this.started(hole, before, options),
+            started: async (hole, before) => this.started(hole, before, await options),
             begins: (hole) => this.begins(hole),
             rendered: (size) => this.rendered(size),
             failed: (error) => this.fail(error),
@@ -141,8 +159,16 @@ export class BhrHole extends Base {
         });
     }
 
+    private async options(): Promise<Options> {
+        const backend = this.getAttribute("backend");
+        const own = backend === null ? {} : { backend: backend as NonNullable<Options["backend"]> };
+        return { shared: true, ...(await (this.constructor as typeof BhrHole).options), ...own };
+    }
+
     private end(): void {
         this.over.abort();
+        clearTimeout(this.moving);
+        this.moving = undefined;
         this.frames?.end();
         [this.frames, this.told, this.lastTime] = [undefined, undefined, undefined];
         this.say("");
@@ -222,17 +248,30 @@ export class BhrHole extends Base {
         }
         const hole = this.hole;
         if (hole !== undefined) {
-            try {
-                this.apply(hole);
-                this.frames?.changed();
-            } catch (error) {
-                this.fail(error);
-            }
+            this.attempt(hole, () => this.apply(hole));
+        } else {
+            this.describe();
         }
-        this.describe();
     }
 
-    /** Sets the sections whose attributes have changed since the last time; a reader's camera stays as long as it may. */
+    /** Sets something, and shows it if it is something else; or says what is wrong with it. */
+    private attempt(hole: BlackHole, set: () => void, isMoving = false): void {
+        const before = textOf(hole.scene);
+        try {
+            set();
+            this.clear();
+            if (textOf(hole.scene) !== before) {
+                this.frames?.changed(isMoving);
+            }
+        } catch (error) {
+            this.fail(error);
+        }
+        if (!isMoving) {
+            this.describe();
+        }
+    }
+
+    /** Sets the sections whose attributes have changed since the last time; the rest stays as a reader has moved it. */
     private apply(hole: BlackHole): void {
         const named = [...this.attributes].map(({ name, value }): [string, string] => [name, value]);
         const wanted = settingsOf(new Map(named), this.defaults);
@@ -244,8 +283,13 @@ export class BhrHole extends Base {
             }
         }
         replace(hole, next);
-        this.told = wanted;
-        this.clear();
+        [this.told, this.home] = [wanted, wanted.camera];
+    }
+
+    private replaceBy(hole: BlackHole, attributes: Readonly<Record<string, string>>): void {
+        const settings = settingsOf(new Map(Object.entries(attributes)), this.defaults);
+        replace(hole, settings);
+        this.home = settings.camera;
     }
 
     private async started(hole: BlackHole, before: BlackHole | undefined, { wasm }: Options): Promise<void> {
@@ -254,6 +298,11 @@ export class BhrHole extends Base {
             replace(hole, before.scene);
         }
         this.apply(hole);
+        if (this.awaited !== undefined) {
+            this.replaceBy(hole, this.awaited);
+            this.awaited = undefined;
+        }
+        this.clear();
         this.describe(hole);
     }
 
@@ -287,13 +336,20 @@ export class BhrHole extends Base {
         }
         const { camera } = hole.scene;
         const orbit = moved(orbitOf(camera, placeOf(this.defaults)), azimuth, elevation, factor);
-        this.set(hole, { ...hole.scene, camera: placed(orbit, camera) });
-        this.frames?.changed(true);
+        this.attempt(hole, () => replace(hole, { ...hole.scene, camera: placed(orbit, camera) }), true);
         this.dispatchEvent(new Event("input"));
+        clearTimeout(this.moving);
+        this.moving = setTimeout(() => this.rest(), REST_MS);
     }
 
+    /** A reader has stopped moving the camera. */
     private rest(): void {
-        if (this.hasAttribute("controls") && !this.isPlaying) {
+        clearTimeout(this.moving);
+        if (this.moving === undefined) {
+            return;
+        }
+        this.moving = undefined;
+        if (!this.isPlaying) {
             this.frames?.settled();
         }
         this.describe();
@@ -308,9 +364,8 @@ export class BhrHole extends Base {
         if (key === " ") {
             this.playing = !this.isPlaying;
         } else if (key === "Home") {
-            this.set(hole, { ...hole.scene, camera: this.told?.camera });
-            this.frames?.changed();
-            this.rest();
+            this.attempt(hole, () => replace(hole, { ...hole.scene, camera: this.home }));
+            this.dispatchEvent(new Event("change"));
         } else if (key === "Escape") {
             // The wheel and fingers are the page's again.
             this.picture?.blur();
@@ -320,23 +375,16 @@ export class BhrHole extends Base {
         return true;
     }
 
-    private set(hole: BlackHole, settings: Settings): void {
-        try {
-            replace(hole, settings);
-            this.clear();
-        } catch (error) {
-            this.fail(error);
-        }
-    }
-
     private describe(hole = this.hole): void {
         const sentence = this.defaults === "" ? "A black hole." : sentenceOf(hole?.scene ?? {}, this.defaults);
         this.picture?.setAttribute("aria-label", this.getAttribute("alt") ?? sentence);
     }
 
     private say(text: string): void {
-        if (this.notice !== undefined && this.notice.textContent !== text) {
-            this.notice.textContent = text;
+        const place = this.notice?.firstElementChild;
+        if (this.notice && place && place.textContent !== text) {
+            place.textContent = text;
+            this.notice.hidden = text === "";
         }
     }
 

@@ -49,7 +49,7 @@ export class Frames {
 
     constructor(
         private readonly place: HTMLElement,
-        private readonly options: Options,
+        private readonly options: Options | Promise<Options>,
         private readonly listener: Listener,
     ) {}
 
@@ -190,7 +190,7 @@ export class Frames {
         this.canvases.push(canvas);
         let hole: BlackHole | undefined;
         try {
-            hole = await BlackHole.create(canvas, this.options);
+            hole = await BlackHole.create(canvas, await this.options);
             await this.listener.started(hole, this.before);
             if (this.isOver) {
                 throw new Error("the element was removed");
