@@ -3,11 +3,12 @@
 bhr_interop.h; and the program bhr, which pip puts where commands are.
 
 The environment variable BHR_LIBRARY names a built library, BHR_PROGRAM a built program, without which the wheel has
-none; without either, cargo builds both for release. BHR_WEB_TREE names a folder that packaging/npm --tree has made, of
-which bhr.widget needs two files; without, the wheel lacks them, and bhr.widget says so. For another machine than this one BHR_PLATFORM says the wheel's
-platform (build-wheel --platform does). hatchling was chosen over
-maturin because it takes a library that is already there, built by whatever cross-compiler, and because
-maturin would need cbindgen a second time for what include/bhr.h already says.
+none; without either, cargo builds both for release. For another machine than this one BHR_PLATFORM says the wheel's
+platform (build-wheel --platform does). BHR_WEB_TREE names a folder that packaging/npm --tree has made, of which
+bhr.widget needs two files; without it the wheel lacks them, and bhr.widget says so.
+
+hatchling was chosen over maturin because it takes a library that is already there, built by whatever cross-compiler,
+and because maturin would need cbindgen a second time for what include/bhr.h already says.
 """
 
 from __future__ import annotations

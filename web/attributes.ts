@@ -71,7 +71,8 @@ export function settingsOf(attributes: ReadonlyMap<string, string>, defaults: st
     if (above.camera?.orbit !== undefined) {
         // Whoever says one of the three means the others to stay.
         const orbit = { ...orbitOf(below.camera, placeOf(defaults)), ...above.camera.orbit };
-        return merged({ ...below, camera: placed(orbit, below.camera) }, { ...above, camera: { ...above.camera, orbit } });
+        const base = { ...below, camera: placed(orbit, below.camera) };
+        return merged(base, { ...above, camera: { ...above.camera, orbit } });
     }
     if (above.camera?.position !== undefined && below.camera?.orbit !== undefined) {
         const { orbit: _, ...camera } = below.camera;

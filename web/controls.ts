@@ -106,7 +106,8 @@ export class Controls {
         event.preventDefault();
         const pixels = event.deltaY * (WHEEL_UNITS[event.deltaMode] ?? 1);
         const speed = event.ctrlKey ? 0.005 : 0.001;
-        this.listener.move({ azimuth: 0, elevation: 0, factor: Math.exp(Math.min(Math.max(pixels, -300), 300) * speed) });
+        const factor = Math.exp(Math.min(Math.max(pixels, -300), 300) * speed);
+        this.listener.move({ azimuth: 0, elevation: 0, factor });
     }
 
     private key(event: KeyboardEvent): void {

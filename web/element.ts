@@ -36,8 +36,8 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events
 :host([controls]) [part=picture]:active { cursor: grabbing; }
 [part=picture]:focus { outline: none; }
 [part=picture]:focus-visible { outline: 2px solid #7ab8ff; outline-offset: -2px; }
-[part=notice] { position: absolute; inset: auto 0 0 0; margin: 0 auto 0.75em; width: fit-content; box-sizing: border-box;
-    max-width: calc(100% - 1.5em); padding: 0.5em 0.9em; border-radius: 0.5em; background: rgb(20 22 28 / 88%);
+[part=notice] { position: absolute; inset: auto 0 0 0; margin: 0 auto 0.75em; width: fit-content;
+    box-sizing: border-box; max-width: calc(100% - 1.5em); padding: 0.5em 0.9em; border-radius: 0.5em; background: rgb(20 22 28 / 88%);
     font: 0.875rem/1.4 system-ui, sans-serif; overflow-wrap: anywhere; pointer-events: none; }
 [part=notice] > span { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
 [part=notice][hidden] { display: none; }
@@ -181,7 +181,7 @@ export class BhrHole extends Base {
         const tell = () => {
             const most = Number(this.getAttribute("max-pixels") ?? MOST_PIXELS);
             const part = Math.min(1, Math.sqrt((most >= 1 ? most : MOST_PIXELS) / Math.max(width * height, 1)));
-            frames.seen(isSeen, Math.round(width * part), Math.round(height * part));
+            frames.seen(isSeen, Math.floor(width * part), Math.floor(height * part));
         };
         const sizes = new ResizeObserver(([entry]) => {
             const [box] = entry?.devicePixelContentBoxSize ?? [];

@@ -14,8 +14,8 @@ import { fileURLToPath } from "node:url";
 export const here = dirname(fileURLToPath(import.meta.url));
 
 const types = { ".css": "text/css", ".html": "text/html", ".jpg": "image/jpeg", ".js": "text/javascript",
-    ".json": "application/json", ".png": "image/png", ".svg": "image/svg+xml", ".wasm": "application/wasm",
-    ".webp": "image/webp" };
+    ".json": "application/json", ".png": "image/png", ".svg": "image/svg+xml", ".txt": "text/plain",
+    ".wasm": "application/wasm", ".webp": "image/webp" };
 
 /**
  * Serves folders under their names, `{ bhr: "/folder" }` as `/bhr/`, and this folder under "/", so that a page finds
@@ -28,7 +28,8 @@ export async function served(folders) {
         const found = folders[first] && rest.length ? join(folders[first], ...rest) : join(here, path);
         const file = extname(found) ? found : join(found, "index.html");
         if (!existsSync(file)) {
-            response.writeHead(404).end();
+            // Browsers ask for an icon by themselves.
+            response.writeHead(path === "favicon.ico" ? 204 : 404).end();
             return;
         }
         response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" });

@@ -3,7 +3,8 @@
 // of anywidget. Bundled into one file, with the CPU tracer's worker in it as text; Python sends the WebAssembly module
 // when a page asks for it, so that no notebook file holds it.
 
-import { BhrHole } from "../element.js";
+import "../element.js";
+import type { BhrHole } from "../element.js";
 import { link as linkOf } from "../link.js";
 import type { Options, Settings } from "../index.js";
 import worker from "./worker.txt";

@@ -65,6 +65,10 @@ def _angle(**more: Any) -> Any:
     return traitlets.Union(either, default_value=None, allow_none=True, **more).tag(sync=True)
 
 
+def _word(text: str) -> Any:
+    return _Word(None, allow_none=True, help=text).tag(sync=True)
+
+
 class Hole(anywidget.AnyWidget):
     """A black hole in a notebook, which readers turn by dragging, by pinching and by keys.
 
@@ -85,8 +89,8 @@ class Hole(anywidget.AnyWidget):
     azimuth = _angle(help="Of the camera, from +x towards +y: radians, or text such as '30 deg'.")
     elevation = _angle(help="Of the camera above the equatorial plane: radians, or text such as '30 deg'.")
     fov = _angle(help="Height of the view: radians, or text such as '45 deg'.")
-    preset = _Word(None, allow_none=True, help="A named look, such as 'teaching' or bhr.Preset.TEACHING.").tag(sync=True)
-    view = _Word(None, allow_none=True, help="What pixels show, such as 'redshift' or bhr.View.REDSHIFT.").tag(sync=True)
+    preset = _word("A named look, such as 'teaching' or bhr.Preset.TEACHING.")
+    view = _word("What pixels show, such as 'redshift' or bhr.View.REDSHIFT.")
     time = _number(help="The time at which matter is seen, in lengths of the scene.")
     controls = traitlets.Bool(True, help="Whether readers may turn it.").tag(sync=True)
     playing = traitlets.Bool(False, help="Whether time runs, unless a reader wants little motion.").tag(sync=True)
