@@ -37,8 +37,9 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events
 [part=picture]:focus { outline: none; }
 [part=picture]:focus-visible { outline: 2px solid #7ab8ff; outline-offset: -2px; }
 [part=notice] { position: absolute; inset: auto 0 0 0; margin: 0 auto 0.75em; width: fit-content;
-    box-sizing: border-box; max-width: calc(100% - 1.5em); padding: 0.5em 0.9em; border-radius: 0.5em; background: rgb(20 22 28 / 88%);
-    font: 0.875rem/1.4 system-ui, sans-serif; overflow-wrap: anywhere; pointer-events: none; }
+    box-sizing: border-box; max-width: calc(100% - 1.5em); padding: 0.5em 0.9em; border-radius: 0.5em;
+    background: rgb(20 22 28 / 88%); font: 0.875rem/1.4 system-ui, sans-serif; overflow-wrap: anywhere;
+    pointer-events: none; }
 [part=notice] > span { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
 [part=notice][hidden] { display: none; }
 #help { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
@@ -101,15 +102,22 @@ export class BhrHole extends Base {
         return this.frames?.hole;
     }
 
-    /** Whether time runs. */
-    get playing(): boolean {
-        return this.isPlaying;
+    /** Whether time stands still. No property is called `playing`: React would set that in place of the attribute. */
+    get paused(): boolean {
+        return !this.isPlaying;
     }
 
-    set playing(is: boolean) {
-        this.isPlaying = is;
+    /** Lets time run. */
+    play(): void {
+        this.isPlaying = true;
         this.lastTime = undefined;
-        is ? this.frames?.changed(true) : this.frames?.settled();
+        this.frames?.changed(true);
+    }
+
+    /** Lets time stand still. */
+    pause(): void {
+        this.isPlaying = false;
+        this.frames?.settled();
     }
 
     /** Shows what a script has set in `hole`. */
@@ -231,7 +239,8 @@ export class BhrHole extends Base {
     /** What the attributes say besides the scene. Time does not run by itself for readers who want little motion. */
     private behave(): void {
         const picture = this.picture as HTMLDivElement;
-        this.playing = this.hasAttribute("playing") && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+        const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+        this.hasAttribute("playing") && !isCalm ? this.play() : this.pause();
         if (this.hasAttribute("controls")) {
             picture.tabIndex = 0;
             picture.setAttribute("aria-describedby", "help");
@@ -362,7 +371,7 @@ export class BhrHole extends Base {
             return false;
         }
         if (key === " ") {
-            this.playing = !this.isPlaying;
+            this.isPlaying ? this.pause() : this.play();
         } else if (key === "Home") {
             this.attempt(hole, () => replace(hole, { ...hole.scene, camera: this.home }));
             this.dispatchEvent(new Event("change"));
