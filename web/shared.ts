@@ -9,6 +9,9 @@ interface Pool {
     readonly traces: Promise<Traces>;
     holders: number;
     last: Promise<unknown>;
+    /** The sky map and the LUT that the tracer has. */
+    map?: ImageData | undefined;
+    cube?: string | undefined;
 }
 
 const pools = new Map<string, Pool>();
@@ -43,6 +46,9 @@ class Share implements Traces {
     /** Those of this holder's own frames. */
     stats: Stats;
     private isOver = false;
+    /** The sky map and the LUT of this holder's frames. */
+    private map: ImageData | undefined;
+    private cube: string | undefined;
 
     constructor(
         private readonly traces: Traces,
@@ -61,11 +67,31 @@ class Share implements Traces {
     }
 
     paint(...frame: Parameters<Traces["paint"]>): Promise<void> {
-        return this.inTurn(() => this.traces.paint(...frame));
+        return this.inTurn(async () => {
+            await this.bring();
+            return this.traces.paint(...frame);
+        });
     }
 
     image(...frame: Parameters<Traces["image"]>): ReturnType<Traces["image"]> {
-        return this.inTurn(() => this.traces.image(...frame));
+        return this.inTurn(async () => {
+            await this.bring();
+            return this.traces.image(...frame);
+        });
+    }
+
+    setSkyMap(picture: ImageData | undefined): Promise<void> {
+        return this.inTurn(async () => {
+            await this.traces.setSkyMap(picture);
+            this.map = this.pool.map = picture;
+        });
+    }
+
+    setFilmLut(cube: string | undefined): Promise<void> {
+        return this.inTurn(async () => {
+            await this.traces.setFilmLut(cube);
+            this.cube = this.pool.cube = cube;
+        });
     }
 
     loseDevice(): void {
@@ -83,6 +109,18 @@ class Share implements Traces {
             const end = () => this.traces.end();
             // A tracer that cannot be freed any more has ended by itself.
             this.pool.last.then(end, end).catch(() => undefined);
+        }
+    }
+
+    /** Gives the tracer this holder's map and LUT, where another one's are there. */
+    private async bring(): Promise<void> {
+        if (this.pool.map !== this.map) {
+            await this.traces.setSkyMap(this.map);
+            this.pool.map = this.map;
+        }
+        if (this.pool.cube !== this.cube) {
+            await this.traces.setFilmLut(this.cube);
+            this.pool.cube = this.cube;
         }
     }
 
