@@ -6,8 +6,9 @@
 // PACKAGE: the folder that packaging/npm --tree makes; SCRATCH: a folder for pictures, unless BHR_TESTS_PICTURES names
 // one. Prints a line for each test, and "N passed, M failed". Environment: that of browser.mjs.
 
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { bytesOf, difference, finished, holds, launched, opened, served, test } from "./browser.mjs";
+import { bytesOf, difference, finished, here, holds, launched, opened, served, test } from "./browser.mjs";
 
 const [pack, scratch] = process.argv.slice(2);
 const pictures = process.env.BHR_TESTS_PICTURES ?? scratch;
@@ -351,6 +352,30 @@ await test("the notebook's half shows a model, and tells it what readers do", as
         return [asked, model.listeners.length, document.querySelectorAll("bhr-hole").length].join();
     });
     holds(over === "1,0,0", over);
+    holds(said.length === 0, said.join("\n"));
+});
+
+await test("the element in docs/web.md shows a hole, and sharing a tracer shares no sky map", async () => {
+    const samples = readFileSync(join(here, "../../docs/web.md"), "utf8").matchAll(/```html\n(.*?)```/gs);
+    const [sample] = [...samples].map(([, text]) => text).filter((text) => text.includes("<bhr-hole"));
+    // Few pixels of the tracer that compiles nothing are enough.
+    const small = sample.replace("./bhr/", "/bhr/").replace(" controls", ' controls backend="cpu" max-pixels="2000"');
+    writeFileSync(join(pictures, "element.html"), small);
+    const { page: plain, said } = await opened(browser, `${server.address}/scratch/element.html`);
+    await plain.waitForFunction(() => document.querySelector("bhr-hole").hole?.stats.frame_index > 0);
+    const found = await plain.evaluate(async () => {
+        const { BlackHole } = await import("/bhr/index.js");
+        const make = async () => (await BlackHole.create(null, { backend: "cpu", shared: true }))
+            .set({ disk: false, sky: { flags: ["map"] }, camera: { position: [0, 900, 0], forward: [0, 1, 0] } });
+        const [one, other] = [await make(), await make()];
+        const white = new ImageData(new Uint8ClampedArray(16 * 8 * 4).fill(255), 16, 8);
+        await one.setSkyMap(white);
+        const light = async (hole) => (await hole.image(2, 2)).data[0];
+        const seen = [await light(one), await light(other), await light(one)];
+        return { link: document.querySelector("bhr-hole").hole.link(), seen };
+    });
+    holds(/distance=26&.*elevation=6%20deg.*hole\.spin=0\.9/.test(found.link), found.link);
+    holds(found.seen[0] > 100 && found.seen[1] === 0 && found.seen[2] === found.seen[0], found.seen.join());
     holds(said.length === 0, said.join("\n"));
 });
 
