@@ -4,13 +4,16 @@ bhr_interop.h; and the program bhr, which pip puts where commands are.
 
 The environment variable BHR_LIBRARY names a built library, BHR_PROGRAM a built program, without which the wheel has
 none; without either, cargo builds both for release. For another machine than this one BHR_PLATFORM says the wheel's
-platform (build-wheel --platform does). hatchling was chosen over
-maturin because it takes a library that is already there, built by whatever cross-compiler, and because
-maturin would need cbindgen a second time for what include/bhr.h already says.
+platform (build-wheel --platform does). BHR_WEB_TREE names a folder that packaging/npm --tree has made, of which
+bhr.widget needs two files; without it the wheel lacks them, and bhr.widget says so.
+
+hatchling was chosen over maturin because it takes a library that is already there, built by whatever cross-compiler,
+and because maturin would need cbindgen a second time for what include/bhr.h already says.
 """
 
 from __future__ import annotations
 
+import gzip
 import os
 import re
 import runpy
@@ -96,6 +99,18 @@ def program(library: Path) -> Path | None:
     return path
 
 
+def web_module(tree: Path, scratch: Path, names: dict[str, Any]) -> dict[str, str]:
+    """The files that bhr.widget needs of a tree of the npm package, with their places in the wheel."""
+    files = [tree / "notebook.js", tree / "wasm" / "bhr_bg.wasm"]
+    for file in files:
+        if not file.is_file():
+            raise FileNotFoundError(f"BHR_WEB_TREE is no folder of packaging/npm --tree: {file} is not there")
+    packed = scratch / names["MODULE"]
+    # Without the time the same module gives the same wheel.
+    packed.write_bytes(gzip.compress(files[1].read_bytes(), mtime=0))
+    return {str(files[0]): f"bhr/web/{names['SCRIPT']}", str(packed): f"bhr/web/{names['MODULE']}"}
+
+
 class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         if version == "editable":
@@ -110,6 +125,10 @@ class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         ffi.set_source("bhr._ffi", None)
         ffi.cdef(declarations("\n".join(header.read_text(encoding="utf-8") for header in headers)))
         ffi.emit_python_code(str(module))
+        given = os.environ.get("BHR_WEB_TREE")
+        if given:
+            names = runpy.run_path(str(Path(self.root) / "src" / "bhr" / "_web.py"))
+            build_data["force_include"].update(web_module(Path(given).resolve(), Path(self.scratch.name), names))
         suffix, system = platform()
         library_file = runpy.run_path(str(Path(self.root) / "src" / "bhr" / "_platform.py"))["library_file"]
         file = library(root, library_file(system))

@@ -6,6 +6,7 @@ import { loaded, type Source } from "./load.js";
 import { link as linkOf, settingsOf } from "./link.js";
 import type { Crossing, HoleInfo, Ray, Vector } from "./scene.js";
 import { merged, textOf, type Settings } from "./settings.js";
+import { shareOf } from "./shared.js";
 import { CpuTracer, GpuTracer, type Adapter, type Image, type Pixels, type Stats, type Traces } from "./tracers.js";
 import { settingsOfText } from "./written.js";
 
@@ -22,6 +23,8 @@ export interface Options {
     wasm?: Source;
     /** The worker of the CPU tracer: by default made of worker.js beside this script. */
     worker?: () => Worker;
+    /** Whether it takes turns with others at one tracer, and so at one device: for pages with many canvases. */
+    shared?: boolean;
 }
 
 /** How a frame is made. */
@@ -83,15 +86,16 @@ export class BlackHole {
      * `code` is NO_ADAPTER where `backend` is "webgpu" and the browser has none.
      */
     static async create(canvas?: HTMLCanvasElement | null, options: Options = {}): Promise<BlackHole> {
-        const { backend = "auto", wasm: source, worker } = options;
+        const { backend = "auto", wasm: source, worker, shared = false } = options;
         if (backend !== "auto" && backend !== "webgpu" && backend !== "cpu") {
             throw new TypeError(`backend is ${String(backend)}; it must be "auto", "webgpu" or "cpu"`);
         }
         const wasm = await loaded(source);
         const onCpu = () => CpuTracer.start(worker, source);
         const onGpu = () => GpuTracer.start(wasm);
-        const traces =
-            backend === "cpu" ? await onCpu() : backend === "webgpu" ? await onGpu() : await onGpu().catch(onCpu);
+        const start: () => Promise<Traces> = () =>
+            backend === "cpu" ? onCpu() : backend === "webgpu" ? onGpu() : onGpu().catch(onCpu);
+        const traces = await (shared ? shareOf(backend, start) : start());
         return new BlackHole(traces, canvas ?? undefined, wasm);
     }
 
