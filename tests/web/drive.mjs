@@ -4,98 +4,25 @@
 //     node drive.mjs PACKAGE BHR SCRATCH
 //
 // PACKAGE: the folder that packaging/npm --tree makes; BHR: the program; SCRATCH: a folder for pictures. Prints a line
-// for each test, and "N passed, M failed". Environment: CHROMIUM, the browser; SWIFTSHADER, the manifest of its driver;
-// MODULES, the folder of node_modules that has playwright-core.
+// for each test, and "N passed, M failed". Environment: that of browser.mjs; SWIFTSHADER, the manifest of the driver.
 
 import { execFile } from "node:child_process";
-import { createReadStream, existsSync, readFileSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { createRequire } from "node:module";
-import { dirname, extname, join, normalize } from "node:path";
-import { fileURLToPath } from "node:url";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { promisify } from "node:util";
+import { bytesOf, difference, finished, here, holds, isSame, launched, opened as openedAt, served, test }
+    from "./browser.mjs";
 
 const [pack, program, scratch] = process.argv.slice(2);
-const here = dirname(fileURLToPath(import.meta.url));
-const { chromium } = createRequire(join(process.env.MODULES, "x.js"))("playwright-core");
 const json = JSON.parse(readFileSync(join(here, "../../include/bhr.json"), "utf8"));
-
-const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm", ".png": "image/png" };
-const roots = { bhr: pack, scratch, page: here };
-const server = createServer((request, response) => {
-    const path = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname)).slice(1);
-    const [first, ...rest] = path.split("/");
-    const place = roots[first] && rest.length ? join(roots[first], ...rest) : join(here, path);
-    const file = path === "sample.html" ? join(scratch, path) : place;
-    if (!existsSync(file) || !extname(file)) {
-        response.writeHead(404).end();
-        return;
-    }
-    response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" });
-    createReadStream(file).pipe(response);
-});
-await new Promise((done) => server.listen(0, "127.0.0.1", done));
-const address = `http://127.0.0.1:${server.address().port}/page.html`;
-
-const flags = ["--no-sandbox", "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--use-angle=vulkan",
-    "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--force-color-profile=srgb"];
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, headless: true, args: flags });
-
-let [passed, failed] = [0, 0];
-async function test(name, work) {
-    const begin = Date.now();
-    let why, timer;
-    const late = new Promise((_, reject) => {
-        timer = setTimeout(() => reject(new Error("it takes longer than two minutes")), 120000);
-    });
-    try {
-        await Promise.race([work(), late]);
-    } catch (error) {
-        why = String(error.stack ?? error);
-    }
-    clearTimeout(timer);
-    why === undefined ? passed++ : failed++;
-    console.log(`${why === undefined ? "ok  " : "FAIL"}  ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
-    if (why !== undefined) {
-        console.log(why.replace(/^/gm, "      "));
-    }
-}
-
-function holds(is, what) {
-    if (!is) {
-        throw new Error(what);
-    }
-}
+const server = await served({ bhr: pack, scratch });
+const browser = await launched();
 
 /** A new page with the package, and what its console said that nobody expected. */
 async function opened() {
-    const page = await browser.newPage({ viewport: { width: 400, height: 300 } });
-    const said = [];
-    page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
-    page.on("pageerror", (error) => said.push(String(error)));
-    page.setDefaultTimeout(300000);
-    await page.goto(address);
+    const { page, said } = await openedAt(browser, `${server.address}/page.html`);
     await page.waitForFunction(() => window.ready === true);
     return { page, said };
-}
-
-const bytesOf = (text) => new Uint8Array(Buffer.from(text, "base64"));
-
-/** How many pixels differ, and by how much at most. */
-function difference(one, other) {
-    holds(one.length === other.length && one.length > 0, `sizes differ: ${one.length} and ${other.length} bytes`);
-    let [most, over] = [0, 0];
-    for (let i = 0; i < one.length; i += 4) {
-        const by = Math.max(...[0, 1, 2, 3].map((c) => Math.abs(one[i + c] - other[i + c])));
-        most = Math.max(most, by);
-        over += by > 1 ? 1 : 0;
-    }
-    return { most, over, pixels: one.length / 4 };
-}
-
-/** At most one pixel in 10,000 differs by more than a step. */
-function isSame({ over, pixels, most }) {
-    holds(over <= pixels / 1e4, `${over} of ${pixels} pixels differ, by up to ${most}`);
 }
 
 const run = promisify(execFile);
@@ -366,13 +293,13 @@ await test("set lays objects over one another, and undefined takes back", async 
 await test("the page in docs/web.md shows a hole, and turns it where it is dragged", async () => {
     const [, sample] = /```html\n(.*?)```/s.exec(readFileSync(join(here, "../../docs/web.md"), "utf8"));
     // Fewer pixels are enough.
-    const small = sample.replace('width="960" height="540"', 'width="96" height="54"');
+    const small = sample.replace('width="960" height="540"', 'width="96" height="54"').replace("./bhr/", "/bhr/");
     holds(small !== sample, "the sample's canvas has another size");
     writeFileSync(join(scratch, "sample.html"), small);
     const other = await browser.newPage({ viewport: { width: 192, height: 120 } });
     const wrong = [];
     other.on("pageerror", (error) => wrong.push(String(error)));
-    await other.goto(address.replace("page.html", "sample.html"));
+    await other.goto(`${server.address}/scratch/sample.html`);
     const seen = async () => {
         await other.locator("canvas").screenshot({ path: join(scratch, "sample.png") });
         return bytesOf(await page.evaluate(async () => base64((await decoded("/scratch/sample.png")).data)));
@@ -417,7 +344,4 @@ await test("a lost device is told, and another one shows the same", async () => 
     holds(/the GPU device was lost/.test(found.message), found.message);
 });
 
-await browser.close();
-server.close();
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 && passed > 0 ? 0 : 1);
+await finished(browser, server);
