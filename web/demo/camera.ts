@@ -50,6 +50,9 @@ function poseOfPlace(position: Triple, forward: Triple, up: Triple): Pose {
     return { distance, azimuth, elevation, right: tidy(right), up: tidy(height), roll: tidy(roll) };
 }
 
+/** The camera of a new scene, at (0, 26, 2.5). */
+export const USUAL: Pose = poseOfPlace([0, 26, 2.5], [0, -26, -2.5], [0, 0, 1]);
+
 /** Where the camera is without the way that it has moved by itself. `values`: of the whole scene. */
 export function poseOf(settings: Settings, values: Values): Pose {
     const camera = settings.camera ?? {};
@@ -95,18 +98,19 @@ export function clamped(pose: Pose, horizon: number, mass: number): Pose {
     return { ...pose, distance, elevation };
 }
 
-/** The vertical field of view that shows, in a frame of this shape, as much of a scene made for wide frames. */
-export function fitted(fovY: number, aspect: number): number {
-    const widest = Math.max(1, 1.5 / aspect);
+/** The vertical field of view that shows, in a frame of one shape, what a wider one of shape `made` has from side to side. */
+export function fitted(fovY: number, aspect: number, made: number): number {
+    // Upright frames cut the outer disk: a wider view would make the hole small, and stretch what is at the border.
+    const widest = Math.min(2.2, Math.max(1, made / aspect));
     return Math.min(2.6, 2 * Math.atan(Math.tan(fovY / 2) * widest));
 }
 
 /** The same for a whole scene, of which only flat pictures depend on the frame's shape. */
-export function withFittedView(settings: Settings, values: Values, aspect: number): Settings {
+export function withFittedView(settings: Settings, values: Values, aspect: number, made = 1.6): Settings {
     const camera = values.sections.camera;
     if (camera?.projection !== "perspective") {
         return settings;
     }
-    const fov_y = short(fitted(numberIn(camera, "fov_y"), aspect));
+    const fov_y = short(fitted(numberIn(camera, "fov_y"), aspect, made));
     return { ...settings, camera: { ...settings.camera, fov_y } };
 }

@@ -42,6 +42,7 @@ export class Controls {
     /** Takes the keys of the whole page, but for those that a field or a button needs. */
     listen(keys: Keys): void {
         window.addEventListener("keydown", (event) => {
+            delete this.stage.dataset.by;
             const target = event.target as HTMLElement;
             const isTyping = target.closest("input, select, textarea, dialog") !== null;
             const isPressing = target.closest("button, a, summary, [role=tab]") !== null;
@@ -74,6 +75,8 @@ export class Controls {
         if (event.button > 2) {
             return;
         }
+        // The ring of focus is for those who came by keys.
+        this.stage.dataset.by = "pointer";
         this.stage.focus({ preventScroll: true });
         try {
             this.stage.setPointerCapture(event.pointerId);

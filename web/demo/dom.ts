@@ -53,7 +53,7 @@ export function found<T extends HTMLElement = HTMLElement>(id: string): T {
 const ICONS = {
     scenes: "M4 5h7v6H4zM13 5h7v6h-7zM4 13h7v6H4zM13 13h7v6h-7z",
     settings: "M4 7h9M17 7h3M15 5v4M4 17h3M11 17h9M9 15v4M4 12h12M20 12h0M18 10v4",
-    ray: "M12 12m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0M3 4c9 0 13 2 13 8 0 4-2 7-6 9",
+    ray: "M3 6h4c7.5 0 12 4 12.5 12.5M11 17m-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0",
     save: "M12 4v10M8 10l4 4 4-4M5 19h14",
     share: "M9 14l6-6M8 11l-2 2a3.5 3.5 0 0 0 5 5l2-2M16 13l2-2a3.5 3.5 0 0 0-5-5l-2 2",
     full: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",

@@ -137,7 +137,7 @@ export class Inspector {
         const across = cross(axis, side);
         const away = Math.hypot(...camera) / mass;
         // Near the hole there is the most to see: a camera far away is beyond the drawing.
-        const reach = Math.max(7, Math.min(away * 1.08, 34));
+        const reach = Math.max(7, Math.min(away * 1.08, 15));
         const scale = HALF / (reach * mass);
         const { path } = ray;
         const points: Triple[] = [];

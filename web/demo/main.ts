@@ -97,7 +97,8 @@ async function start(): Promise<void> {
     const aspect = () => stage.clientWidth / Math.max(1, stage.clientHeight);
     const reset = () => {
         session.replace((hole) => hole.reset());
-        session.change(withFittedView(session.settings, session.values, aspect()));
+        // The disk of a new scene is wider than the frame that scenes are made for.
+        session.change(withFittedView(session.settings, session.values, aspect(), 2.1));
     };
     let isLinked = location.hash.length > 1;
     if (isLinked) {

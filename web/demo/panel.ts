@@ -3,7 +3,7 @@
 // through the session only.
 
 import type { Settings } from "./bhr/index.js";
-import { clamped, poseOf, settingsOf, type Pose } from "./camera.js";
+import { clamped, poseOf, settingsOf, USUAL, type Pose } from "./camera.js";
 import { digits, element, found } from "./dom.js";
 import { EFFECTS, filmGroups, HOLE, rowOf, rows, STRENGTHS, VIEW, type Group, type Row } from "./fields.js";
 import { attempt } from "./notices.js";
@@ -124,21 +124,22 @@ export class Panel {
         ]);
     }
 
-    /** A row of the camera's pose. */
+    /** A row of the camera's pose; the distance is told in M. */
     private pose(name: keyof Pose, label: string, about: string, least: number, most: number): Widget {
         const isAngle = name !== "distance";
-        const row = rowOf("", { name, kind: "number", about, unit: isAngle ? "rad" : "scene length" });
+        const row = rowOf("", { name, kind: "number", about, unit: isAngle ? "rad" : "M" });
         const { session } = this;
-        const pose = () => poseOf(session.settings, session.values);
+        const mass = () => numberIn(session.values.sections.hole, "mass");
+        const now = () => poseOf(session.settings, session.values)[name] / (isAngle ? 1 : mass());
         const set = (value: number) => {
-            const mass = numberIn(session.values.sections.hole, "mass");
-            session.change(settingsOf(clamped({ ...pose(), [name]: value }, session.hole.info().horizon_radius, mass)));
+            const pose = { ...poseOf(session.settings, session.values), [name]: value * (isAngle ? 1 : mass()) };
+            session.change(settingsOf(clamped(pose, session.hole.info().horizon_radius, mass())));
         };
         const reach = { least, most, isLog: !isAngle };
         return slider({ ...row, label, reach }, {
-            get: () => pose()[name],
-            set: (value) => set(Number(value ?? { distance: 26, elevation: 0.0958 }[name as string] ?? 0)),
-            isSet: () => pose()[name] !== 0 && name !== "distance",
+            get: now,
+            set: (value) => set(Number(value ?? USUAL[name])),
+            isSet: () => Math.abs(now() - USUAL[name]) > 1e-6,
         });
     }
 

@@ -135,7 +135,7 @@ export function slider(row: Row, access: Access): Widget {
     });
     const update = () => {
         const value = Number(access.get() ?? NaN);
-        const text = digits(value * scale, isWhole ? 16 : 5);
+        const text = digits(value * scale, isWhole ? 16 : scale === 1 ? 5 : 4);
         if (document.activeElement !== range || placeOf(value, reach) !== Number(range.value)) {
             range.value = String(placeOf(value, reach));
         }
