@@ -47,18 +47,15 @@ export class Budget {
             // Up to the finest that comes in time.
             return [1 / 4, 1].map((share) => ({ share, samples: 1 })).filter(fits);
         }
+        // The first frames of a kind take longer, because the browser compiles: only those after them say what is too
+        // much.
         const finer = hasSamples ? [4, 16].map((samples) => ({ share: 1, samples })) : [];
-        return [full, ...finer.filter(fits)];
+        return [full, ...finer.filter((plan) => plan.samples < 16 || fits(plan))];
     }
 
     /** What so many samples take, in milliseconds; 0 while nothing was measured. */
     expected(samples: number): number {
         return this.perSample * samples;
-    }
-
-    /** Another scene may take another time. */
-    forget(): void {
-        this.recent = [];
     }
 
     /** A frame of so many samples took so long. The first one of a kind, which compiles, is not to count. */

@@ -34,7 +34,7 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
             },
             {
                 id: "physical", name: "Physical", about: "A smooth disk as a physicist expects it, without glare",
-                settings: { preset: "physical", hole: { spin: 0.5 } },
+                settings: { preset: "physical", hole: { spin: 0.5 }, camera: orbit(32, 90, 9, 50) },
             },
             {
                 id: "observatory", name: "Observatory", about: "As the Event Horizon Telescope shows its sources",
@@ -88,7 +88,7 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
             {
                 id: "face-on", name: "Face on", about: "From above the disk of a hole of spin 0.98",
                 settings: {
-                    preset: "cinematic", hole: { spin: 0.98 }, camera: orbit(34, 20, 86, 52),
+                    preset: "cinematic", hole: { spin: 0.98 }, camera: orbit(34, 20, 86, 56),
                     disk: { outer_radius: 20, temperature: 3800, brightness: 0.28 }, sky: { map_brightness: 2.5 },
                     film: { highlights: 0.5, shadows: 0.15, contrast: 1.2, vignette: 0.5 },
                 },
@@ -96,7 +96,7 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
             {
                 id: "einstein-ring", name: "Einstein ring", about: "Orion behind a bare hole, 100 M away",
                 settings: {
-                    preset: "cinematic", disk: false, camera: orbit(100, 263, -1, 34), film: { exposure_ev: 2 },
+                    preset: "cinematic", disk: false, camera: orbit(100, 263, -1, 26), film: { exposure_ev: 2.5 },
                 },
             },
             {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // main.ts -- puts the page together: its parts, its buttons and keys, the address with the scene in it. The page's
-// address takes `?pixels=N`, a limit for pictures, and `?backend=cpu`.
+// address takes `?pixels=N` and `?samples=N`, limits for its picture, and `?backend=cpu`.
 
 import { withFittedView } from "./camera.js";
 import { caption } from "./caption.js";
@@ -89,8 +89,11 @@ async function fullScreen(): Promise<void> {
 
 async function start(): Promise<void> {
     const address = new URLSearchParams(location.search);
-    const pixels = Number(address.get("pixels"));
-    const limit = Number.isFinite(pixels) && pixels >= 256 ? pixels : undefined;
+    const limit = (name: string, least: number) => {
+        const value = Number(address.get(name) ?? NaN);
+        return value >= least ? value : undefined;
+    };
+    const limits = { pixels: limit("pixels", 256), samples: limit("samples", 1) };
     const stage = found("stage");
     const session = await Session.start(stage, backendOf(address.get("backend")));
     window.demo = { session };
@@ -113,7 +116,7 @@ async function start(): Promise<void> {
         reset();
     }
 
-    const view = new View(session, stage, limit);
+    const view = new View(session, stage, limits);
     const falls = new Falls(session, () => view.touch());
     view.advance = () => falls.advance();
     const sheet = new Sheet();

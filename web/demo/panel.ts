@@ -110,9 +110,9 @@ export class Panel {
             ["Horizon", "horizon_radius", () => inM(info().horizon_radius)],
             ["Ergosphere", "ergosphere_equatorial_radius: the edge of the region where nothing can stay at rest, in the "
                 + "equatorial plane", () => inM(info().ergosphere_equatorial_radius)],
-            ["Photon orbit +", "photon_orbit_prograde: light that goes round with the spin",
+            ["Light +", "photon_orbit_prograde: the circular orbit of light with the spin",
                 () => inM(info().photon_orbit_prograde)],
-            ["Photon orbit \u2212", "photon_orbit_retrograde: light that goes round against the spin",
+            ["Light \u2212", "photon_orbit_retrograde: the circular orbit of light against the spin",
                 () => inM(info().photon_orbit_retrograde)],
             ["ISCO +", "isco_prograde: the innermost stable circular orbit of matter with the spin",
                 () => inM(info().isco_prograde)],

@@ -61,21 +61,23 @@ export class Presets {
     }
 
     /** Measures, once, whether the device manages matter with depth. */
-    measure(): Promise<void> {
-        this.measuring ??= this.tried().catch((error: unknown) => {
+    async measure(): Promise<void> {
+        const thin = this.expected(MEASURED.width * MEASURED.height);
+        if (thin === 0) {
+            return;
+        }
+        this.measuring ??= this.tried(thin).catch((error: unknown) => {
             this.measuring = undefined;
             throw error;
         });
-        return this.measuring;
+        await this.measuring;
     }
 
-    private async tried(): Promise<void> {
+    private async tried(thin: number): Promise<void> {
         const { session } = this;
         const { width, height } = MEASURED;
         const deep = lookOf("soft-disk");
-        const thin = this.expected(width * height);
-        if (thin === 0 || deep === undefined) {
-            this.measuring = undefined;
+        if (deep === undefined) {
             return;
         }
         if (!session.isGpu || thin > MOST_THIN_MS) {

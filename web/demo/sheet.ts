@@ -8,7 +8,7 @@ export type Tab = "scenes" | "settings" | "ray" | "save";
 const TABS: readonly Tab[] = ["scenes", "settings", "ray", "save"];
 
 /** Shares of the page's height that the sheet takes. */
-const STOPS = [0.5, 0.72];
+const STOPS = [0.5, 0.66];
 const HEADER = 56;
 
 export class Sheet {

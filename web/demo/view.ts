@@ -34,13 +34,14 @@ export class View {
     private isRunning = false;
     private sharpening: AbortController | undefined;
     private frames = 0;
+    private last = { width: 0, height: 0 };
     private failedAt: string | undefined;
 
     constructor(
         private readonly session: Session,
         private readonly stage: HTMLElement,
-        /** A limit from the page's address. */
-        private readonly limit: number | undefined,
+        /** The most pixels, and samples of each, that the page's address asks for. */
+        private readonly limits: { pixels: number | undefined; samples: number | undefined },
     ) {
         this.budget = new Budget(session.isGpu);
         session.onChange(() => this.touch());
@@ -57,7 +58,7 @@ export class View {
     get size(): { width: number; height: number } {
         const { clientWidth, clientHeight } = this.stage;
         const scale = window.devicePixelRatio || 1;
-        const most = Math.min(this.limit ?? Infinity, this.session.isGpu ? MOST_PIXELS : MOST_CPU_PIXELS);
+        const most = Math.min(this.limits.pixels ?? Infinity, this.session.isGpu ? MOST_PIXELS : MOST_CPU_PIXELS);
         return this.sized(clientWidth * scale, clientHeight * scale, most);
     }
 
@@ -94,7 +95,9 @@ export class View {
                 this.isStale = false;
                 next = 0;
                 const plan = this.budgetNow().moving;
-                await this.frame(plan, true, false);
+                if (await this.frame(plan, true)) {
+                    this.tell(plan, true, false);
+                }
                 // The finest frame while moving is the first of those at rest.
                 next = plan.share === 1 ? 1 : 0;
                 await untilDrawn();
@@ -105,20 +108,31 @@ export class View {
                 await sleep(REST_MS - rested);
                 continue;
             }
-            const { width, height } = this.size;
-            const plans = this.budgetNow().resting(width * height, this.session.values.top.view === "light");
-            const plan = plans[next];
+            const plan = this.plans()[next];
             if (plan === undefined) {
                 return;
             }
-            if (await this.frame(plan, false, next === plans.length - 1)) {
+            if (await this.frame(plan, false)) {
                 next++;
+                // By what this frame took, the next one may be too much.
+                this.tell(plan, false, this.plans()[next] === undefined);
             }
         }
     }
 
+    private plans(): Plan[] {
+        const { width, height } = this.size;
+        const most = this.limits.samples ?? Infinity;
+        const hasSamples = this.session.values.top.view === "light";
+        return this.budgetNow().resting(width * height, hasSamples).filter(({ samples }) => samples <= most);
+    }
+
+    private tell({ samples }: Plan, isMoving: boolean, isFinal: boolean): void {
+        this.shown({ ...this.last, samples, isFinal, isMoving });
+    }
+
     /** Makes a frame, and says whether it is there; one that is given up is not. */
-    private async frame(plan: Plan, isMoving: boolean, isFinal: boolean): Promise<boolean> {
+    private async frame(plan: Plan, isMoving: boolean): Promise<boolean> {
         const full = this.size;
         const size = this.sized(full.width, full.height, full.width * full.height * plan.share);
         const { session } = this;
@@ -145,7 +159,7 @@ export class View {
         if (this.frames++ > 0) {
             this.budget.took(ms, size.width * size.height * plan.samples, plan, isMoving);
         }
-        this.shown({ ...size, samples: plan.samples, isFinal, isMoving });
+        this.last = size;
         return true;
     }
 
