@@ -245,6 +245,12 @@ await test("a PNG file is a picture of the size asked for, and an EXR file reads
     holds(bytes.readUInt32BE(16) === 2 * size[0] && bytes.readUInt32BE(20) === 2 * size[1],
         `${bytes.readUInt32BE(16)} x ${bytes.readUInt32BE(20)}`);
     holds(bytes.length > 2000, "the picture is empty");
+    // One that takes long can be ended.
+    await page.locator("#save-size").selectOption("4k");
+    await page.getByRole("button", { name: "Save PNG" }).click();
+    await page.getByText(/^PNG, 3840 x \d+ pixels/).waitFor();
+    await page.getByRole("button", { name: "Cancel" }).click();
+    await page.getByRole("button", { name: "Cancel" }).waitFor({ state: "hidden" });
     await page.locator("#save-size").selectOption("1x");
     const exr = await download(page, "Save EXR");
     const read = readExr(exr.bytes);

@@ -27,7 +27,7 @@ const scaled = (a: Triple, by: number): Triple => [a[0] * by, a[1] * by, a[2] * 
 const unit = (a: Triple): Triple => scaled(a, 1 / Math.hypot(...a));
 
 /** Poles are left out: there the picture would turn about at a touch. */
-export const STEEPEST = (89.9 * Math.PI) / 180;
+const STEEPEST = (89.9 * Math.PI) / 180;
 
 /** The pose of a camera that was set by position and forward, as scene files and links may. */
 function poseOfPlace(position: Triple, forward: Triple, up: Triple): Pose {
@@ -99,7 +99,7 @@ export function clamped(pose: Pose, horizon: number, mass: number): Pose {
 }
 
 /** The vertical field of view that shows, in a frame of one shape, what a wider one of shape `made` has from side to side. */
-export function fitted(fovY: number, aspect: number, made: number): number {
+function fitted(fovY: number, aspect: number, made: number): number {
     // Upright frames cut the outer disk: a wider view would make the hole small, and stretch what is at the border.
     const widest = Math.min(2.2, Math.max(1, made / aspect));
     return Math.min(2.6, 2 * Math.atan(Math.tan(fovY / 2) * widest));

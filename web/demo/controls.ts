@@ -44,8 +44,8 @@ export class Controls {
         window.addEventListener("keydown", (event) => {
             delete this.stage.dataset.by;
             const target = event.target as HTMLElement;
-            const isTyping = target.closest("input, select, textarea, dialog") !== null;
-            const isPressing = target.closest("button, a, summary, [role=tab]") !== null;
+            const isTyping = target.closest("input[type=text], select, textarea, dialog") !== null;
+            const isPressing = target.closest("button, a, summary, input, [role^=tab]") !== null;
             if (event.ctrlKey || event.metaKey || event.altKey || isTyping) {
                 return;
             }

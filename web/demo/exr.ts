@@ -11,7 +11,7 @@ const ZIP_LINES = 16;
 const CHANNELS = [["A", 3], ["B", 2], ["G", 1], ["R", 0]] as const;
 
 /** The bits of the half nearest to a number, to even where two are as near. */
-export function halfOf(value: number): number {
+function halfOf(value: number): number {
     const bits = new DataView(new ArrayBuffer(4));
     bits.setFloat32(0, value);
     const word = bits.getUint32(0);

@@ -86,7 +86,7 @@ const REACHES: Record<string, Reach> = {
 
 const UNITS: Record<string, string> = { rad: "°", "scene length": "len", "frame height": "h", pixel: "px" };
 
-export type Section = keyof typeof SCHEMA;
+type Section = keyof typeof SCHEMA;
 
 /** A field as a row. */
 export function rowOf(section: string, field: Field): Row {
@@ -144,7 +144,7 @@ export interface Group {
 }
 
 const LIMITS = ["auto_percentile", "auto_target", "auto_least_ev", "auto_most_ev", "auto_adaptation"];
-export const FILM: readonly Group[] = [
+const FILM: readonly Group[] = [
     { title: "Exposure", names: ["exposure_ev", "auto_exposure"] },
     { title: "Light meter", names: LIMITS, needs: { name: "auto_exposure" } },
     { title: "Curve", names: ["tone_map", "highlights", "shadows"] },
