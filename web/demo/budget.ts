@@ -44,8 +44,8 @@ export class Budget {
         const fits = ({ share, samples }: Plan) => this.expected(pixels * share * samples) <= longest;
         const full: Plan = { share: 1, samples: 1 };
         if (!this.isGpu) {
-            // Up to the finest that comes in time.
-            return [1 / 4, 1].map((share) => ({ share, samples: 1 })).filter(fits);
+            // Whatever a quarter takes, the picture has to come.
+            return [{ share: 1 / 4, samples: 1 }, ...[full].filter(fits)];
         }
         // The first frames of a kind take longer, because the browser compiles: only those after them say what is too
         // much.

@@ -93,9 +93,11 @@ export function rowOf(section: string, field: Field): Row {
     const isAngle = field.unit === "rad";
     const [low, high] = field.range ?? [];
     const reach = REACHES[`${section}.${field.name}`] ?? even(low ?? -10, high ?? 10);
-    const label = field.name.replace(/_ev$/, "").replace("fov_y", "field of view").replaceAll("_", " ");
+    const label = field.name.replace(/_ev$/, "").replace("fov_y", "field of view").replace("fwhm", "FWHM").replaceAll("_", " ");
     const shownUnit = UNITS[field.unit ?? ""] ?? field.unit ?? "";
-    return { ...field, label, reach, scale: isAngle ? DEGREES : 1, shownUnit };
+    // A page has no map of the sky.
+    const words = field.words?.filter(({ word }) => section !== "sky" || word !== "map");
+    return { ...field, ...(words && { words }), label, reach, scale: isAngle ? DEGREES : 1, shownUnit };
 }
 
 /** Rows of a section by name; without names, all but those. */

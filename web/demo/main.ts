@@ -29,6 +29,7 @@ const MOVING_LINK_MS = 2000;
 /** Matter moves by itself on devices that show it at full resolution. */
 const QUICK_MS = 20;
 
+const BY_CPU = "The processor traces, as the page's address asks, in double precision.";
 const NO_WEBGPU = "This browser gives the page no WebGPU, so the processor traces, in double precision: pictures are "
     + "small and take seconds. Chrome and Edge 113, Firefox 141 and Safari 26, or newer, have WebGPU.";
 
@@ -122,7 +123,7 @@ async function start(): Promise<void> {
     const sheet = new Sheet();
     const inspector = new Inspector(session, stage, view);
     const panel = new Panel(session, (motion) => falls.move(motion));
-    const presets = new Presets(session, stage, (samples) => view.expected(samples), () => falls.pause());
+    const presets = new Presets(session, stage, () => falls.pause());
     const files = new Files(session, view);
     const controls = new Controls(session, stage, () => falls.isCarried);
     const help = found<HTMLDialogElement>("help");
@@ -143,6 +144,13 @@ async function start(): Promise<void> {
     found("help-close").addEventListener("click", () => help.close());
     docs();
 
+    // Once the cards are seen, and the picture needs the device no more.
+    let isSharp = false;
+    const measure = () => {
+        if (isSharp && sheet.current === "scenes") {
+            attempt(() => presets.measure());
+        }
+    };
     sheet.shown = (tab) => {
         for (const name of ["scenes", "settings", "ray", "save"] as const) {
             tools[name].setAttribute("aria-pressed", String(tab === name));
@@ -155,9 +163,7 @@ async function start(): Promise<void> {
         if (tab === "settings") {
             panel.wake();
         }
-        if (tab === "scenes") {
-            attempt(() => presets.measure());
-        }
+        measure();
     };
     controls.clicked = (x, y) => {
         sheet.open("ray");
@@ -208,11 +214,12 @@ async function start(): Promise<void> {
             document.body.classList.add("ready");
         }
         if (isFirst && !session.isGpu) {
-            notice(NO_WEBGPU, "error");
+            notice(address.get("backend") === "cpu" ? BY_CPU : NO_WEBGPU, "error");
         }
         isFirst = false;
-        if (isFinal && frames < 12 && sheet.current === "scenes") {
-            attempt(() => presets.measure());
+        if (isFinal && !isSharp) {
+            isSharp = true;
+            measure();
         }
         const isQuick = view.expected(width * height) < QUICK_MS && session.isGpu;
         if (isFinal && frames < 12 && isQuick && !isCalm && !isLinked && session.value("view") === "light") {

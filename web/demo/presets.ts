@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // presets.ts -- cards with pictures of scenes. Those with depth are offered where the device was measured to manage them.
 
+import type { Settings } from "./bhr/index.js";
 import { withFittedView } from "./camera.js";
 import { element, found } from "./dom.js";
 import { lookOf, LOOKS, type Look } from "./looks.js";
@@ -22,8 +23,6 @@ export class Presets {
     constructor(
         private readonly session: Session,
         private readonly stage: HTMLElement,
-        /** Milliseconds that so many samples of the present scene take. */
-        private readonly expected: (samples: number) => number,
         private readonly chosen: () => void,
     ) {
         const place = found("scenes");
@@ -62,37 +61,42 @@ export class Presets {
 
     /** Measures, once, whether the device manages matter with depth. */
     async measure(): Promise<void> {
-        const thin = this.expected(MEASURED.width * MEASURED.height);
-        if (thin === 0) {
-            return;
-        }
-        this.measuring ??= this.tried(thin).catch((error: unknown) => {
+        this.measuring ??= this.tried().catch((error: unknown) => {
             this.measuring = undefined;
             throw error;
         });
         await this.measuring;
     }
 
-    private async tried(thin: number): Promise<void> {
-        const { session } = this;
-        const { width, height } = MEASURED;
-        const deep = lookOf("soft-disk");
-        if (deep === undefined) {
+    private async tried(): Promise<void> {
+        if (!this.session.isGpu) {
+            this.offer(false, "Not offered: without WebGPU a picture with depth takes minutes.");
             return;
         }
-        if (!session.isGpu || thin > MOST_THIN_MS) {
-            this.offer(false, `Not offered: this device takes ${Math.round(thin)} ms for a small frame of a thin disk, `
-                + "and many times as long for matter with depth.");
+        const thin = await this.timed({});
+        if (thin > MOST_THIN_MS) {
+            this.offer(false, `Not offered: this device takes ${thin} ms for a small frame of a thin disk, and many `
+                + "times as long for matter with depth.");
             return;
         }
-        const frame = () => session.meanwhile(deep.settings, (hole) => hole.image(width, height));
+        const deep = await this.timed(lookOf("soft-disk")?.settings ?? {});
+        const isQuick = deep <= MOST_MS;
+        const what = `small frame with depth takes ${deep} ms on this device`;
+        this.offer(isQuick, isQuick ? `A ${what}.` : `Not offered: a ${what}.`);
+    }
+
+    /** Milliseconds of a scene's frame. A first one is not counted: the browser compiles for it. */
+    private async timed(settings: Settings): Promise<number> {
+        const frame = () => this.session.meanwhile(settings, (hole) => hole.image(MEASURED.width, MEASURED.height));
         await frame();
-        const begin = performance.now();
-        await frame();
-        const ms = Math.round(performance.now() - begin);
-        const isQuick = ms <= MOST_MS;
-        const what = `A small frame with depth takes ${ms} ms on this device`;
-        this.offer(isQuick, isQuick ? `${what}.` : `Not offered: ${what.toLowerCase()}.`);
+        // The picture on the page may have had its turn in between.
+        let quickest = Infinity;
+        for (let i = 0; i < 2; i++) {
+            const begin = performance.now();
+            await frame();
+            quickest = Math.min(quickest, performance.now() - begin);
+        }
+        return Math.round(quickest);
     }
 
     private offer(isOffered: boolean, why: string): void {

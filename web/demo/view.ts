@@ -156,7 +156,7 @@ export class View {
             this.sharpening = undefined;
         }
         const ms = performance.now() - begin;
-        if (this.frames++ > 0 || !session.isGpu) {
+        if (this.frames++ > 0) {
             this.budget.took(ms, size.width * size.height * plan.samples, plan, isMoving);
         }
         this.last = size;

@@ -115,7 +115,7 @@ export function slider(row: Row, access: Access): Widget {
     const { label, reach, scale, shownUnit } = row;
     const isWhole = row.kind === "seed" || /^(spike_blades|flare_ghosts)$/.test(row.name);
     const range = element("input", { type: "range", min: 0, max: STEPS, step: 1, class: "slider" });
-    const unit = element("span", { class: "unit" }, shownUnit);
+    const unit = element("span", { class: "unit", title: row.unit ?? "" }, shownUnit);
     const number = numberField("", `${label}, as a number`, (shown) => {
         frame.assign(shown / scale);
         range.value = String(placeOf(shown / scale, reach));
@@ -193,9 +193,10 @@ export function vector(row: Row, access: Access, names: readonly string[] = ["x"
         now[i] = value;
         frame.assign(now);
     }));
-    for (const field of fields) {
+    fields.forEach((field, i) => {
         field.removeAttribute("id");
-    }
+        field.title = names[i] ?? "";
+    });
     const unit = row.shownUnit === "" ? [] : [element("span", { class: "unit" }, row.shownUnit)];
     const frame = new Frame(row, access, [element("div", { class: "line" }, ...fields, ...unit)], true);
     const update = () => {
