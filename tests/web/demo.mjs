@@ -97,6 +97,31 @@ const numberOf = (half) => {
     return sign * (exponent === 0 ? rest * 2 ** -24 : exponent === 31 ? Infinity : (1024 + rest) * 2 ** (exponent - 25));
 };
 
+await test("the frame budget follows a device, up and down", async () => {
+    // The page's scripts are modules without a package.json that says so.
+    const source = readFileSync(join(folder, "budget.js"), "utf8");
+    const { Budget } = await import(`data:text/javascript,${encodeURIComponent(source)}`);
+    const pixels = 2e6;
+    for (const [each, share, samples] of [[2e-6, 1, 4], [9e-6, 1, 1], [4e-5, 0.25, 1], [1e-3, 0.125, 1]]) {
+        const budget = new Budget(true);
+        const frame = () => {
+            const plan = budget.moving;
+            budget.took(pixels * plan.share * plan.samples * each, pixels * plan.share * plan.samples, plan, true);
+        };
+        Array.from({ length: 60 }, frame);
+        const { moving } = budget;
+        holds(Math.abs(moving.share / share - 1) < 0.01 && moving.samples === samples,
+            `${each} ms for each pixel: ${JSON.stringify(moving)}`);
+    }
+    // Views of numbers have one sample; 16 that take ten minutes are too many.
+    const slow = new Budget(true);
+    slow.took(2e4, 1e6, slow.moving, false);
+    holds(slow.resting(pixels, true).length === 2 && slow.resting(pixels, false).length === 1, "too much at rest");
+    const cpu = new Budget(false);
+    cpu.took(1e4, 1e6, cpu.moving, false);
+    holds(JSON.stringify(cpu.resting(pixels, true)) === '[{"share":0.25,"samples":1}]', "too much for the CPU");
+});
+
 const page = await demo(DESKTOP);
 let first;
 
@@ -216,6 +241,29 @@ await test("a link in a second page shows the same scene", async () => {
     await other.getByText("spin is 7; it must lie in").waitFor();
     holds((await other.evaluate(() => window.demo.session.text)) === two, "a bad link changed the scene");
     await other.close();
+});
+
+await test("a camera told by position and forward stays where it is, in orbit and turn", async () => {
+    const worst = await page.evaluate(async () => {
+        const { valuesOf } = await import("./values.js");
+        const { poseOf, settingsOf } = await import("./camera.js");
+        const { session } = window.demo;
+        const cameraOf = (camera) => session.meanwhile({ camera }, (hole) => valuesOf(hole.text())).sections.camera;
+        let worst = 0;
+        for (let i = 0; i < 40; i++) {
+            const [a, b, c] = [1, 2, 3].map((k) => Math.sin(k * (i + 0.5) * 1.7));
+            const { position, forward, up } = cameraOf({ orbit: { distance: 20 + 9 * a, azimuth: 3 * b, elevation: c },
+                turn: { right: 3 * c, up: 1.4 * a, roll: 3 * b } });
+            const told = { position, forward, up };
+            const values = session.meanwhile({ camera: told }, (hole) => valuesOf(hole.text()));
+            const again = cameraOf(settingsOf(poseOf({ camera: told }, values)).camera);
+            for (const name of ["position", "forward", "up"]) {
+                told[name].forEach((one, k) => (worst = Math.max(worst, Math.abs(one - again[name][k]))));
+            }
+        }
+        return worst;
+    });
+    holds(worst < 2e-5, `they differ by ${worst}`);
 });
 
 await test("a click shows the ray of its pixel", async () => {

@@ -8,14 +8,19 @@ export interface Plan {
     samples: number;
 }
 
-/** Shares while moving: each has 0.7 times the pixels of the one before, down to an eighth. */
-const SHARES = [0, 1, 2, 3, 4, 5, 6].map((step) => 2 ** (-step / 2));
-/** The CPU tracer goes further down. */
-const CPU_SHARES = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((step) => 2 ** (-step / 2));
+/** Plans while moving: each has 0.7 times the pixels of the one before. */
+const plans = (steps: number): Plan[] =>
+    Array.from({ length: steps + 1 }, (_, step) => ({ share: 2 ** (-step / 2), samples: 1 }));
+/** Down to an eighth of the pixels; quick devices have samples to spare. */
+const GPU_PLANS: readonly Plan[] = [{ share: 1, samples: 4 }, ...plans(6)];
+/** The CPU tracer goes down to a thirty-second. */
+const CPU_PLANS: readonly Plan[] = plans(10);
+
+const costOf = ({ share, samples }: Plan) => share * samples;
 
 /** Some 40 frames a second; a finer picture is tried where it would still come in time. */
 const AIM_MS = 26;
-const FINER_MS = 18;
+const FINER_MS = 22;
 
 /** Frames that the user can end are made if they take up to this long; others, those of the CPU, up to that. */
 const LONGEST_MS = 45000;
@@ -23,19 +28,19 @@ const CPU_LONGEST_MS = 5000;
 
 export class Budget {
     private step: number;
-    private readonly shares: readonly number[];
+    private readonly plans: readonly Plan[];
     private recent: number[] = [];
     /** Milliseconds for each sample, by the last frame that was larger than some thousand. */
     private perSample = 0;
 
     constructor(private readonly isGpu: boolean) {
-        this.shares = isGpu ? SHARES : CPU_SHARES;
-        this.step = this.shares.length - 1;
+        this.plans = isGpu ? GPU_PLANS : CPU_PLANS;
+        this.step = this.plans.length - 1;
     }
 
     /** The frame to make while the picture moves. */
     get moving(): Plan {
-        return { share: this.shares[this.step] ?? 1, samples: 1 };
+        return this.plans[this.step] ?? { share: 1, samples: 1 };
     }
 
     /** The frames that sharpen a picture of so many pixels at rest, in order. */
@@ -62,7 +67,7 @@ export class Budget {
     took(ms: number, samples: number, plan: Plan, isMoving: boolean): void {
         const each = ms / Math.max(1, samples);
         this.perSample = this.perSample === 0 ? each : Math.min(each, 0.7 * this.perSample + 0.3 * each);
-        if (!isMoving || plan.share !== this.moving.share) {
+        if (!isMoving || costOf(plan) !== costOf(this.moving)) {
             return;
         }
         this.recent = [...this.recent, ms].slice(-3);
@@ -71,12 +76,12 @@ export class Budget {
             return;
         }
         const quickest = Math.min(...this.recent);
-        const finer = this.shares[this.step - 1];
-        if (quickest > AIM_MS && this.step < this.shares.length - 1) {
+        const finer = this.plans[this.step - 1];
+        if (quickest > AIM_MS && this.step < this.plans.length - 1) {
             const fall = quickest > 2 * AIM_MS ? 2 : 1;
-            this.step = Math.min(this.shares.length - 1, this.step + fall);
+            this.step = Math.min(this.plans.length - 1, this.step + fall);
             this.recent = [];
-        } else if (finer !== undefined && (quickest * finer) / plan.share < FINER_MS) {
+        } else if (finer !== undefined && (quickest * costOf(finer)) / costOf(plan) < FINER_MS) {
             this.step--;
             this.recent = [];
         }

@@ -94,12 +94,13 @@ export class View {
             if (this.isStale || moves) {
                 this.isStale = false;
                 next = 0;
-                const plan = this.budgetNow().moving;
+                const { share, samples } = this.budgetNow().moving;
+                const plan = { share, samples: Math.min(samples, this.limits.samples ?? Infinity) };
                 if (await this.frame(plan, true)) {
                     this.tell(plan, true, false);
                 }
-                // The finest frame while moving is the first of those at rest.
-                next = plan.share === 1 ? 1 : 0;
+                // A frame with all pixels is one of those at rest.
+                next = share < 1 ? 0 : samples < 4 ? 1 : 2;
                 await untilDrawn();
                 continue;
             }
