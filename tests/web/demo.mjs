@@ -348,6 +348,7 @@ await test("a fall goes on by the camera's clock, and the scrubber goes to its e
     await page.waitForFunction(() => document.querySelector(".facts").textContent.includes("Horizon1.436 M"));
     await page.getByRole("button", { name: "Fall", exact: true }).click();
     await page.waitForFunction(() => window.demo.session.settings.camera.proper_time > 0.2);
+    holds((await scene(page)).film.auto_exposure === 0.7, "the light meter is off");
     await page.keyboard.press("Escape");
     await page.getByRole("button", { name: "Pause time" }).click();
     await page.getByLabel("Time", { exact: true }).focus();
@@ -360,7 +361,8 @@ await test("a fall goes on by the camera's clock, and the scrubber goes to its e
     await shown(page, before + 1);
     await shot(page, "fall");
     await page.getByRole("button", { name: "Hold" }).click();
-    holds((await scene(page)).camera.motion === undefined, "the camera goes on");
+    const after = await scene(page);
+    holds(after.camera.motion === undefined && !after.film?.auto_exposure, "the camera goes on, or the meter");
     await page.getByRole("button", { name: "Orbit" }).click();
     await page.getByText("circles lie in the plane").waitFor();
     await page.waitForFunction(() => window.demo.session.settings.camera.proper_time > 0.1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// falls.ts -- time: matter that orbits, and a camera that falls or orbits, by the clock that it carries. Play, pause and
-// a scrubber. Sets `time` and the camera's motion only.
+// falls.ts -- time: matter that orbits, and a camera that falls or orbits, by the clock that it carries. Play, pause
+// and a scrubber. Sets `time`, the camera's motion, and in a fall the film's light meter.
 
 import type { Motion, Settings } from "./bhr/index.js";
 import { poseOf, settingsOf } from "./camera.js";
@@ -17,6 +17,8 @@ const ORBIT_SECONDS = 24;
 const FALL_SECONDS = 9;
 /** M in seconds for the hole in the middle of the Milky Way, of 4.3 million solar masses. */
 const SGR_A_SECONDS = 4.9255e-6 * 4.3e6;
+/** Ahead of an observer who falls all light grows brighter without limit: the film's light meter follows it so far. */
+const METER = 0.7;
 /** The scrubber's steps. */
 const STEPS = 2000;
 /** A slow device shows a slower film rather than one that jumps. */
@@ -33,6 +35,7 @@ export class Falls {
     private last: number | undefined;
     private end: number | undefined;
     private endOf = "";
+    private isMetered = false;
     private readonly play = element("button", { type: "button", class: "tool play", onclick: () => this.toggle() });
     private readonly scrubber = element("input", { type: "range", class: "slider", min: 0, max: STEPS, step: 1,
         "aria-label": "Time" });
@@ -127,10 +130,23 @@ export class Falls {
         const chart = motion === "free_fall" && spin !== 0 ? "rain" : undefined;
         const camera = { ...settingsOf(pose).camera, motion: motion === "static" ? undefined : motion, chart,
             proper_time: undefined } as unknown as Settings["camera"];
-        session.change({ camera });
+        session.change({ camera, ...this.meter(motion) });
         if (motion === "free_fall" || motion === "orbit") {
             this.start();
         }
+    }
+
+    /** The light meter is on during a fall, unless the film has it otherwise, and off again after that. */
+    private meter(motion: Motion): Settings {
+        const now = this.session.value("film.auto_exposure");
+        if (motion === "free_fall" && now === 0 && !this.isMetered) {
+            this.isMetered = true;
+            notice("Light grows brighter in a fall: the film's light meter follows it (Settings, Film: exposure).");
+            return { film: { auto_exposure: METER } };
+        }
+        const isOver = motion !== "free_fall" && this.isMetered;
+        this.isMetered = this.isMetered && !isOver;
+        return isOver && now === METER ? ({ film: { auto_exposure: undefined } } as unknown as Settings) : {};
     }
 
     toggle(): void {
