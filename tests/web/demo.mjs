@@ -4,8 +4,8 @@
 //     node demo.mjs PAGE SCRATCH
 //
 // PAGE: the folder that packaging/page makes; SCRATCH: a folder for files. Prints a line for each test, and "N passed,
-// M failed". Environment: as browser.mjs has it; PYTHON, one that has the module OpenEXR, if EXR files are to be read by
-// it as well; BHR_TESTS_PICTURES, a folder for screenshots.
+// M failed". Environment: as browser.mjs has it; PYTHON, one that has the module OpenEXR, if it is to read EXR files as
+// well; BHR_TESTS_PICTURES, a folder for screenshots.
 
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync } from "node:fs";
@@ -94,7 +94,8 @@ function readExr(bytes) {
 
 const numberOf = (half) => {
     const [sign, exponent, rest] = [half & 0x8000 ? -1 : 1, (half >> 10) & 31, half & 1023];
-    return sign * (exponent === 0 ? rest * 2 ** -24 : exponent === 31 ? Infinity : (1024 + rest) * 2 ** (exponent - 25));
+    const size = exponent === 0 ? rest * 2 ** -24 : exponent === 31 ? Infinity : (1024 + rest) * 2 ** (exponent - 25);
+    return sign * size;
 };
 
 await test("the frame budget follows a device, up and down", async () => {
@@ -178,7 +179,7 @@ await test("wheel, keys and shift-drag move as the help says", async () => {
     holds(after.orbit.azimuth > orbit.azimuth && after.turn.right !== undefined, JSON.stringify(after));
 });
 
-await test("a slider of the panel sets a field, a bad number is told in its row, and reset takes the field back", async () => {
+await test("a slider sets a field, a bad number is told in its row, and reset takes the field back", async () => {
     await page.keyboard.press("p");
     const slider = page.getByLabel("Elevation", { exact: true });
     await slider.focus();
@@ -321,7 +322,8 @@ await test("a PNG file is a picture of the size asked for, and an EXR file reads
         const program = "import sys, OpenEXR, numpy as n\nf = OpenEXR.File(sys.argv[1])\n"
             + "c = f.channels()['RGBA'].pixels\nprint(c.shape[1], c.shape[0], float(n.mean(c[..., 0])))";
         const [width, height, mean] = execFileSync(process.env.PYTHON, ["-c", program, exr.path]).toString().split(" ");
-        holds(Number(width) === size[0] && Number(height) === size[1] && Number(mean) > 0, `${width} ${height} ${mean}`);
+        const isSame = Number(width) === size[0] && Number(height) === size[1];
+        holds(isSame && Number(mean) > 0, `${width} ${height} ${mean}`);
     }
 });
 

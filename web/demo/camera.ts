@@ -98,7 +98,7 @@ export function clamped(pose: Pose, horizon: number, mass: number): Pose {
     return { ...pose, distance, elevation };
 }
 
-/** The vertical field of view that shows, in a frame of one shape, what a wider one of shape `made` has from side to side. */
+/** The vertical field of view that shows, in a frame of one shape, what a wider one has from side to side. */
 function fitted(fovY: number, aspect: number, made: number): number {
     // Upright frames cut the outer disk: a wider view would make the hole small, and stretch what is at the border.
     const widest = Math.min(2.2, Math.max(1, made / aspect));

@@ -13,7 +13,7 @@ import { numberIn } from "./values.js";
 const MATTER_SPEED = 6;
 /** A whole orbit of the camera lasts so many seconds. */
 const ORBIT_SECONDS = 24;
-/** A fall would last so long at the speed that it begins with; it slows down, because the last M has the most to see. */
+/** A fall would last so long at the speed that it begins with; it slows down, for the last M has the most to see. */
 const FALL_SECONDS = 9;
 /** M in seconds for the hole in the middle of the Milky Way, of 4.3 million solar masses. */
 const SGR_A_SECONDS = 4.9255e-6 * 4.3e6;
@@ -249,5 +249,8 @@ function duration(seconds: number): string {
     if (size < 60) {
         return `${digits(seconds, 3)} s`;
     }
-    return size < 3600 ? `${Math.floor(seconds / 60)} min ${Math.floor(size % 60)} s` : `${digits(seconds / 3600, 3)} h`;
+    if (size < 3600) {
+        return `${Math.floor(seconds / 60)} min ${Math.floor(size % 60)} s`;
+    }
+    return `${digits(seconds / 3600, 3)} h`;
 }

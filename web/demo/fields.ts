@@ -93,7 +93,8 @@ export function rowOf(section: string, field: Field): Row {
     const isAngle = field.unit === "rad";
     const [low, high] = field.range ?? [];
     const reach = REACHES[`${section}.${field.name}`] ?? even(low ?? -10, high ?? 10);
-    const label = field.name.replace(/_ev$/, "").replace("fov_y", "field of view").replace("fwhm", "FWHM").replaceAll("_", " ");
+    const name = field.name.replace(/_ev$/, "").replace("fov_y", "field of view").replace("fwhm", "FWHM");
+    const label = name.replaceAll("_", " ");
     const shownUnit = UNITS[field.unit ?? ""] ?? field.unit ?? "";
     // A page has no map of the sky.
     const words = field.words?.filter(({ word }) => section !== "sky" || word !== "map");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// files.ts -- what leaves the page and comes into it: links, pictures, light, scene files. Changes the scene only where a
-// file is opened.
+// files.ts -- what leaves the page and comes into it: links, pictures, light, scene files. Changes the scene only where
+// a file is opened.
 
 import { element, found } from "./dom.js";
 import { exrOf, type Depth } from "./exr.js";

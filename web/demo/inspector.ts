@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// inspector.ts -- the ray of one pixel: its way about the hole, drawn from above and from the side, and its numbers under
-// the names of bhr.h. Changes nothing of the scene.
+// inspector.ts -- the ray of one pixel: its way about the hole, drawn from above and from the side, and its numbers
+// under the names of bhr.h. Changes nothing of the scene.
 
 import type { TracedRay } from "./bhr/index.js";
 import { digits, drawn, element, found } from "./dom.js";
@@ -116,8 +116,8 @@ export class Inspector {
             lines.push([`crossing ${i + 1}`,
                 `r ${digits(radius / mass, 4)} M, φ ${degrees(azimuth)}, g ${digits(redshift, 4)}, `
                 + `delay ${digits(delay / mass, 4)} M`,
-                "BhrCrossing: where the ray crosses the equatorial plane, the redshift of matter that orbits there, and "
-                + "how long ago its light left"]);
+                "BhrCrossing: where the ray crosses the equatorial plane, the redshift of matter that orbits there, "
+                + "and how long ago its light left"]);
         });
         lines.push(["steps", String(ray.steps), "Integration steps"]);
         this.numbers.replaceChildren(...lines.map(([name, value, about]) =>
@@ -176,8 +176,8 @@ export class Inspector {
         };
         const legend = element("p", { class: "legend" },
             `Black: the horizon. Dashed: circular orbits of light. The square is ${digits(2 * reach, 3)} M wide.`);
-        this.views.replaceChildren(drawing("from above", side, across, true), drawing("from the side", side, axis, false),
-            legend);
+        this.views.replaceChildren(drawing("from above", side, across, true),
+            drawing("from the side", side, axis, false), legend);
     }
 
     /** A place in the equatorial plane by its azimuth, which is told from scene x, or what of it lies in the plane. */

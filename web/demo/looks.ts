@@ -77,7 +77,8 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
                 },
             },
             {
-                id: "crescent", name: "Crescent", about: "Nearly along the disk: the side that comes outshines the other",
+                id: "crescent", name: "Crescent",
+                about: "Nearly along the disk: the side that comes outshines the other",
                 settings: {
                     preset: "cinematic", hole: { spin: 0.94 }, camera: orbit(40, 75, 1.6, 30),
                     disk: { outer_radius: 16, temperature: 3200, brightness: 0.43 },
@@ -147,7 +148,8 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
         title: "With depth",
         looks: [
             {
-                id: "soft-disk", name: "Soft disk", about: "A disk of mist, a twentieth of its radius thick", isDeep: true,
+                id: "soft-disk", name: "Soft disk", about: "A disk of mist, a twentieth of its radius thick",
+                isDeep: true,
                 settings: {
                     preset: "cinematic", disk: false, hole: { spin: 0.6 }, camera: orbit(28, 75, 6.5, 37.6),
                     volumes: [{ shape: "disk" }], film: { tone_map: "agx", exposure_ev: 1.5 },
@@ -155,7 +157,8 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
                 },
             },
             {
-                id: "hot-spot", name: "Hot spot", about: "A glowing blob in orbit at 7 M, over a dim disk", isDeep: true,
+                id: "hot-spot", name: "Hot spot", about: "A glowing blob in orbit at 7 M, over a dim disk",
+                isDeep: true,
                 settings: {
                     preset: "cinematic", hole: { spin: 0.6 }, camera: orbit(30, 75, 13, 38),
                     disk: { brightness: 0.06, temperature: 2600 },

@@ -108,8 +108,8 @@ export class Panel {
         };
         return facts([
             ["Horizon", "horizon_radius", () => inM(info().horizon_radius)],
-            ["Ergosphere", "ergosphere_equatorial_radius: the edge of the region where nothing can stay at rest, in the "
-                + "equatorial plane", () => inM(info().ergosphere_equatorial_radius)],
+            ["Ergosphere", "ergosphere_equatorial_radius: the edge of the region where nothing can stay at rest, in "
+                + "the equatorial plane", () => inM(info().ergosphere_equatorial_radius)],
             ["Light +", "photon_orbit_prograde: the circular orbit of light with the spin",
                 () => inM(info().photon_orbit_prograde)],
             ["Light \u2212", "photon_orbit_retrograde: the circular orbit of light against the spin",
@@ -213,7 +213,8 @@ export class Panel {
     /** Of the sky's orientation the turn about the scene's z, which one slider can show. */
     private skyTurn(): Widget {
         const { session } = this;
-        const row = rowOf("", { name: "turn", kind: "number", unit: "rad", about: "The sky's turn about the scene's z." });
+        const about = "The sky's turn about the scene's z.";
+        const row = rowOf("", { name: "turn", kind: "number", unit: "rad", about });
         const path = "sky.orientation";
         return slider({ ...row, reach: { least: -Math.PI, most: Math.PI } }, {
             get: () => {

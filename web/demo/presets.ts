@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// presets.ts -- cards with pictures of scenes. Those with depth are offered where the device was measured to manage them.
+// presets.ts -- cards with pictures of scenes. Those with depth are offered where the device was measured to manage
+// them.
 
 import type { Settings } from "./bhr/index.js";
 import { withFittedView } from "./camera.js";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// sheet.ts -- the panel as a column beside the picture, and on narrow pages as a sheet that is drawn up from below, with
-// tabs. Knows nothing of what is in it.
+// sheet.ts -- the panel as a column beside the picture, and on narrow pages as a sheet that is drawn up from below,
+// with tabs. Knows nothing of what is in it.
 
 import { found } from "./dom.js";
 
