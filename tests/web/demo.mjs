@@ -369,6 +369,15 @@ await test("a fall goes on by the camera's clock, and the scrubber goes to its e
     await page.getByText("circles lie in the plane").waitFor();
     await page.waitForFunction(() => window.demo.session.settings.camera.proper_time > 0.1);
     await page.getByRole("button", { name: "Pause time" }).click();
+    // A journey's card begins it.
+    await page.getByRole("button", { name: "Scenes", exact: true }).click();
+    await page.getByRole("button", { name: /^A fall/ }).click();
+    await page.waitForFunction(() => {
+        const { motion, proper_time } = window.demo.session.settings.camera;
+        return motion === "free_fall" && proper_time > 0.1 && proper_time < 12;
+    });
+    await page.getByRole("button", { name: "Pause time" }).click();
+    await page.keyboard.press("Escape");
     await page.getByRole("button", { name: "Hold" }).click();
 });
 

@@ -2,6 +2,7 @@
 // main.ts -- puts the page together: its parts, its buttons and keys, the address with the scene in it. The page's
 // address takes `?pixels=N` and `?samples=N`, limits for its picture, and `?backend=cpu`.
 
+import type { Settings } from "./bhr/index.js";
 import { withFittedView } from "./camera.js";
 import { caption } from "./caption.js";
 import { Controls } from "./controls.js";
@@ -98,6 +99,7 @@ async function start(): Promise<void> {
     const stage = found("stage");
     const session = await Session.start(stage, backendOf(address.get("backend")));
     window.demo = { session };
+    const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     const aspect = () => stage.clientWidth / Math.max(1, stage.clientHeight);
     const reset = () => {
         session.replace((hole) => hole.reset());
@@ -123,7 +125,14 @@ async function start(): Promise<void> {
     const sheet = new Sheet();
     const inspector = new Inspector(session, stage, view);
     const panel = new Panel(session, (motion) => falls.move(motion));
-    const presets = new Presets(session, stage, () => falls.pause());
+    const presets = new Presets(session, stage, ({ settings }) => {
+        falls.pause();
+        // A journey begins at its beginning.
+        if (settings.camera?.motion !== undefined && !isCalm) {
+            session.change({ camera: { proper_time: undefined } } as unknown as Settings);
+            falls.start();
+        }
+    });
     const files = new Files(session, view);
     const controls = new Controls(session, stage, () => falls.isCarried);
     const help = found<HTMLDialogElement>("help");
@@ -201,7 +210,6 @@ async function start(): Promise<void> {
     name();
 
     const state = found("state");
-    const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     let frames = 0;
     let isFirst = true;
     view.shown = (progress: Progress) => {

@@ -24,7 +24,7 @@ export class Presets {
     constructor(
         private readonly session: Session,
         private readonly stage: HTMLElement,
-        private readonly chosen: () => void,
+        private readonly chosen: (look: Look) => void,
     ) {
         const place = found("scenes");
         for (const { title, looks } of LOOKS) {
@@ -49,7 +49,7 @@ export class Presets {
         for (const [id, card] of this.cards) {
             card.toggleAttribute("aria-current", id === look.id);
         }
-        this.chosen();
+        this.chosen(look);
     }
 
     /** Shows the scene of a card, with as much of it in the frame as a wide frame would have. */
