@@ -82,7 +82,7 @@ export class Controls {
         const scale = TURN / Math.max(this.element.clientHeight, 1);
         const apart = (place: { x: number; y: number }) =>
             other === undefined ? 1 : Math.max(Math.hypot(place.x - other.x, place.y - other.y), 1);
-        // Of two fingers each turns by half: both together turn as one does.
+        // Each of two fingers turns by half: both together turn as one does.
         const share = other === undefined ? scale : scale / 2;
         this.pointers.set(pointerId, { x, y });
         this.listener.move({

@@ -104,7 +104,7 @@ function numberField(id: string, label: string, tell: (value: number) => void): 
 }
 
 function showIn(field: HTMLInputElement, text: string): void {
-    // What is being typed stays.
+    // A number stays while it is typed.
     if (document.activeElement !== field || field.dataset.shown === undefined) {
         field.value = text;
     }

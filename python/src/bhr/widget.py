@@ -115,7 +115,7 @@ class Hole(anywidget.AnyWidget):
         self.on_msg(self._asked)
 
     def _asked(self, _: Any, content: Any, __: Any) -> None:
-        # As a message the module is in no notebook's file, which keeps the traits of widgets.
+        # Sent as a message, the module is in no notebook's file, which keeps the traits of widgets.
         if isinstance(content, Mapping) and content.get("kind") == "module":
             self.send({"kind": "module"}, buffers=[_web.module()])
 
