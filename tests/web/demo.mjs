@@ -204,7 +204,7 @@ await test("every field that bhr.h has of these structs is in the panel", async 
     await page.getByText("Hot spot 1", { exact: true }).waitFor({ state: "attached" });
     const names = await page.locator("#settings .name").evaluateAll((all) =>
         all.map((node) => node.textContent.toLowerCase()));
-    const left = /^(struct_size|reserved\d*|orientation|lut_strength|paper_white|peak)$/;
+    const left = /^(struct_size|reserved\d*|orientation|paper_white|peak)$/;
     for (const struct of ["BhrDisk", "BhrSky", "BhrFilm", "BhrVolume", "BhrHotSpot"]) {
         const { fields } = json.structs.find(({ name }) => name === struct);
         for (const { name } of fields.filter(({ name }) => !left.test(name))) {
@@ -332,15 +332,47 @@ await test("a scene file that is saved opens again", async () => {
     const { path, bytes } = await download(page, "Save scene");
     holds(/spin = 0\.25/.test(bytes.toString()), "the file says another spin");
     await page.evaluate(() => window.demo.session.replace((hole) => hole.reset()));
-    await page.locator('input[type="file"]').setInputFiles(path);
+    await page.getByLabel("A scene file").setInputFiles(path);
     await page.getByText("scene.toml was opened").waitFor();
     // Zeros lose their signs.
     const [one, two] = [await page.evaluate(() => window.demo.session.text), bytes.toString()].map((text) =>
         text.replaceAll("-0.0,", "0.0,"));
     holds(one === two, "another scene was opened");
-    await page.locator('input[type="file"]').setInputFiles({ name: "bad.toml", mimeType: "text/plain",
+    await page.getByLabel("A scene file").setInputFiles({ name: "bad.toml", mimeType: "text/plain",
         buffer: Buffer.from("hole.spin = 9\n") });
     await page.getByText(/spin is 9; it must lie in/).waitFor();
+});
+
+await test("a sky and a LUT of one's own are in the picture, and go again", async () => {
+    await page.evaluate(() => window.demo.session.replace((hole) => hole.reset().set({ disk: false })));
+    /** Until one channel of a small frame is bright, and another is not. */
+    const has = (places) => page.waitForFunction(async ([most, least]) => {
+        const { session } = window.demo;
+        const { data } = await session.meanwhile(session.settings, (hole) => hole.image(48, 30));
+        const mean = [0, 1, 2].map((i) => data.reduce((all, one, at) => all + (at % 4 === i ? one : 0), 0) / 1440);
+        return mean[most] > 60 && mean[least] < mean[most] / 4;
+    }, places);
+    // All of the sky is red.
+    const red = await page.evaluate(async () => {
+        const canvas = new OffscreenCanvas(64, 32);
+        const context = canvas.getContext("2d");
+        context.fillStyle = "#f00000";
+        context.fillRect(0, 0, 64, 32);
+        return [...new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer())];
+    });
+    const file = { name: "red.png", mimeType: "image/png", buffer: Buffer.from(red) };
+    await page.getByLabel("A sky map").setInputFiles(file);
+    await page.getByText("red.png is the sky now").waitFor();
+    await has([0, 2]);
+    // Red and blue change places.
+    const nodes = [0, 1].flatMap((b) => [0, 1].flatMap((g) => [0, 1].map((r) => `${b} ${g} ${r}`)));
+    const cube = { name: "swap.cube", mimeType: "text/plain",
+        buffer: Buffer.from(["LUT_3D_SIZE 2", ...nodes, ""].join("\n")) };
+    await page.getByLabel("A LUT").setInputFiles(cube);
+    await page.getByText("swap.cube colours the picture now").waitFor();
+    await has([2, 0]);
+    await page.getByRole("button", { name: "Remove both" }).click();
+    await page.waitForFunction(() => window.demo.session.settings.sky?.flags === undefined);
 });
 
 await test("a fall goes on by the camera's clock, and the scrubber goes to its end", async () => {

@@ -96,9 +96,7 @@ export function rowOf(section: string, field: Field): Row {
     const name = field.name.replace(/_ev$/, "").replace("fov_y", "field of view").replace("fwhm", "FWHM");
     const label = name.replaceAll("_", " ");
     const shownUnit = UNITS[field.unit ?? ""] ?? field.unit ?? "";
-    // A page has no map of the sky.
-    const words = field.words?.filter(({ word }) => section !== "sky" || word !== "map");
-    return { ...field, ...(words && { words }), label, reach, scale: isAngle ? DEGREES : 1, shownUnit };
+    return { ...field, label, reach, scale: isAngle ? DEGREES : 1, shownUnit };
 }
 
 /** Rows of a section by name; without names, all but those. */
@@ -156,7 +154,7 @@ const FILM: readonly Group[] = [
         names: ["toe_strength", "toe_length", "shoulder_strength", "shoulder_length", "shoulder_angle"],
         needs: { name: "tone_map", word: "filmic" },
     },
-    { title: "Grade", names: ["white_balance", "tint", "contrast", "saturation", "colour_map"] },
+    { title: "Grade", names: ["white_balance", "tint", "contrast", "saturation", "colour_map", "lut_strength"] },
     { title: "Lens", names: ["bloom", "beam_fwhm", "vignette", "spikes", "streak", "flare"] },
     { title: "Spikes", names: ["spike_blades", "spike_angle", "spike_length"], needs: { name: "spikes" } },
     { title: "Streak", names: ["streak_length", "streak_tint"], needs: { name: "streak" } },
@@ -164,8 +162,8 @@ const FILM: readonly Group[] = [
     { title: "Grain", names: ["grain", "grain_seed"] },
 ];
 
-/** Fields that do nothing in a page: it has no LUT and no display of high dynamic range. */
-const LEFT_OUT = ["lut_strength", "paper_white", "peak"];
+/** Fields that do nothing in a page, whose canvas has no high dynamic range. */
+const LEFT_OUT = ["paper_white", "peak"];
 
 /** Groups with their rows; fields that no group has come last, so that none is missing. */
 export function filmGroups(): (Group & { rows: Row[] })[] {

@@ -10,6 +10,7 @@ import { element, found, iconButton } from "./dom.js";
 import { Falls } from "./falls.js";
 import { Files } from "./files.js";
 import { Inspector } from "./inspector.js";
+import { Maps } from "./maps.js";
 import { attempt, failure, notice } from "./notices.js";
 import { Panel } from "./panel.js";
 import { Presets } from "./presets.js";
@@ -134,6 +135,7 @@ async function start(): Promise<void> {
         }
     });
     const files = new Files(session, view);
+    new Maps(session);
     const controls = new Controls(session, stage, () => falls.isCarried);
     const help = found<HTMLDialogElement>("help");
     const ask = () => (help.open ? help.close() : help.showModal());

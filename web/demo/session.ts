@@ -14,6 +14,8 @@ export type ListName = "volumes" | "hot_spots";
 const MOST_LOSSES = 4;
 
 export class Session {
+    /** Gives another device what no scene holds. */
+    renewed: () => Promise<void> = () => Promise.resolve();
     /** Settings that only the view makes: more samples of each pixel as the picture sharpens. */
     private samples = 1;
     private known: Values | undefined;
@@ -208,6 +210,7 @@ export class Session {
         const hole = await BlackHole.create(canvasIn(this.stage), { backend: this.backend });
         this.current = hole.set(scene);
         this.watch();
+        await this.renewed();
         this.told();
         if (!this.isGpu) {
             notice("WebGPU did not come back: the processor goes on, slowly.");
