@@ -4,7 +4,7 @@
 
 #![allow(dead_code, reason = "some of it only the C API uses, which a page has not")]
 
-/// There are no pools.
+/// Rayon's pool, which is never made: a page has one thread.
 pub enum ThreadPool {}
 
 impl ThreadPool {
@@ -17,7 +17,7 @@ impl ThreadPool {
     }
 }
 
-/// Builds none.
+/// Builds no pool.
 pub struct ThreadPoolBuilder;
 
 impl ThreadPoolBuilder {

@@ -9,19 +9,19 @@ import { merged, type Settings } from "./settings.js";
 import { valuesOf } from "./written.js";
 
 /** Attributes for the common things, with the names that links have for them. */
-const SHORT: Readonly<Record<string, string>> = {
-    spin: "hole.spin",
-    distance: "camera.orbit.distance",
-    azimuth: "camera.orbit.azimuth",
-    elevation: "camera.orbit.elevation",
-    fov: "camera.fov_y",
-    preset: "preset",
-    "preset-matter": "preset_matter",
-    view: "view",
-    effects: "effects",
-    disk: "disk",
-    time: "time",
-};
+const SHORT: ReadonlyMap<string, string> = new Map([
+    ["spin", "hole.spin"],
+    ["distance", "camera.orbit.distance"],
+    ["azimuth", "camera.orbit.azimuth"],
+    ["elevation", "camera.orbit.elevation"],
+    ["fov", "camera.fov_y"],
+    ["preset", "preset"],
+    ["preset-matter", "preset_matter"],
+    ["view", "view"],
+    ["effects", "effects"],
+    ["disk", "disk"],
+    ["time", "time"],
+]);
 
 /** Attributes that say how the element behaves. */
 const BEHAVIOUR: readonly string[] = ["scene", "alt", "controls", "playing", "rate", "backend", "max-pixels"];
@@ -31,11 +31,11 @@ const MORE = ["volumes", "hot_spots", "effect_strengths", "camera.look_at", "cam
     "camera.turn.right", "camera.turn.up", "camera.turn.roll", "camera.orbit.distance", "camera.orbit.azimuth",
     "camera.orbit.elevation", "region.full_width", "region.full_height", "region.x", "region.y"];
 
-const FIELD = /^(hole|camera|disk|volumes|hot[-_]spots|sky|film|quality|region|effect[-_]strengths)([-.]|$)/;
+const FIELD = /^(hole|camera|disk|volumes|hot[-_]spots|sky|film|quality|region|effect[-_]strengths)([-.][\w.-]*)?$/;
 
 /** Whether the element reads an attribute. */
 export function isAttribute(name: string): boolean {
-    return name in SHORT || BEHAVIOUR.includes(name) || FIELD.test(name);
+    return SHORT.has(name) || BEHAVIOUR.includes(name) || FIELD.test(name);
 }
 
 const dashed = (name: string) => name.replace(/[._]/g, "-");
@@ -60,7 +60,7 @@ export function settingsOf(attributes: ReadonlyMap<string, string>, defaults: st
     const below = link === "" ? {} : settingsOfLink(link, defaults);
     const pairs = ["v=1"];
     for (const [attribute, text] of attributes) {
-        const name = SHORT[attribute] ?? (FIELD.test(attribute) ? linkName(attribute, known) : undefined);
+        const name = SHORT.get(attribute) ?? (FIELD.test(attribute) ? linkName(attribute, known) : undefined);
         if (name !== undefined) {
             const isList = Array.isArray(usual.get(name.replace(/^(volumes|hot_spots)\.\d+/, "$1")));
             const parts = isList || /look_at|strengths/.test(name) ? text.trim().split(/[\s,]+/) : [text.trim()];
@@ -89,6 +89,7 @@ export function placeOf(defaults: string): Vector {
 /** A scene in a sentence. */
 export function sentenceOf(settings: Settings, defaults: string): string {
     const { spin = 0, mass = 1 } = settings.hole ?? {};
+    const list = (words: readonly string[]) => words.join(", ").replace(/, ([^,]*)$/, " and $1");
     const { distance, elevation } = orbitOf(settings.camera, placeOf(defaults));
     const number = (value: number) => String(Number(value.toPrecision(3)));
     const angle = Math.abs(elevation) * (180 / Math.PI);
@@ -99,9 +100,9 @@ export function sentenceOf(settings: Settings, defaults: string): string {
         ...((settings.hot_spots?.length ?? 0) > 0 ? ["hot spots"] : []),
     ];
     return [
-        `A black hole ${spin === 0 ? "without spin" : `with a spin of ${number(spin)}`}`,
-        matter.length === 0 ? ", without matter around it" : ` and ${matter.join(", ")}`,
-        `, seen from ${number(distance / mass)} M away, `,
+        spin === 0 ? "A non-spinning black hole" : `A black hole of spin ${number(Number(spin))}`,
+        matter.length === 0 ? ", with no matter around it" : ` with ${list(matter)}`,
+        `, seen from ${number(distance / Number(mass))} M away, `,
         angle < 0.05 ? "in its equatorial plane" : `${number(angle)} degrees ${side} its equatorial plane`,
         settings.view === undefined || settings.view === "light"
             ? "."

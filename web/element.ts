@@ -46,7 +46,7 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events
 `;
 
 const HELP = "Drag or press the arrow keys to turn, plus and minus to come closer or go away, Home to go back, " +
-    "the space bar to let time run or stand still.";
+    "the space bar to start or pause time.";
 
 // Where pages are made on a server there are no elements: the file can be imported there all the same.
 const Base = globalThis.HTMLElement ?? (class {} as typeof HTMLElement);
@@ -143,14 +143,15 @@ export class BhrHole extends Base {
         this.over = new AbortController();
         const { signal } = this.over;
         const options = this.options();
-        const frames = new Frames(this.picture, options, {
-            started: async (hole, before) => this.started(hole, before, await options),
+        const frames: Frames = new Frames(this.picture, options, {
+            started: async (hole, before) => this.started(frames, hole, before, await options),
             begins: (hole) => this.begins(hole),
             rendered: (size) => this.rendered(size),
             failed: (error) => this.fail(error),
         });
         this.frames = frames;
         this.watch(frames, signal);
+        this.setTime();
         this.behave();
         this.picture.ariaBusy = "true";
         const timer = setTimeout(() => this.say("The first picture is being traced."), LONG_MS);
@@ -229,18 +230,22 @@ export class BhrHole extends Base {
             key: (key) => this.key(key),
         });
         const calm = matchMedia("(prefers-reduced-motion: reduce)");
-        calm.addEventListener("change", () => this.behave(), { signal });
+        calm.addEventListener("change", () => this.setTime(), { signal });
         signal.addEventListener("abort", () => {
             [sizes, sight, attributes].forEach((observer) => observer.disconnect());
             controls.end();
         });
     }
 
-    /** What the attributes say besides the scene. Time does not run by itself for readers who want little motion. */
-    private behave(): void {
-        const picture = this.picture as HTMLDivElement;
+    /** Lets time run or stand still, as `playing` says; for readers who want little motion it stands still at first. */
+    private setTime(): void {
         const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
         this.hasAttribute("playing") && !isCalm ? this.play() : this.pause();
+    }
+
+    /** What the attributes say besides scene and time. */
+    private behave(): void {
+        const picture = this.picture as HTMLDivElement;
         if (this.hasAttribute("controls")) {
             picture.tabIndex = 0;
             picture.setAttribute("aria-describedby", "help");
@@ -252,7 +257,10 @@ export class BhrHole extends Base {
     }
 
     private follow(names: ReadonlySet<string>): void {
-        if (names.has("playing") || names.has("controls")) {
+        if (names.has("playing")) {
+            this.setTime();
+        }
+        if (names.has("controls")) {
             this.behave();
         }
         const hole = this.hole;
@@ -301,8 +309,18 @@ export class BhrHole extends Base {
         this.home = settings.camera;
     }
 
-    private async started(hole: BlackHole, before: BlackHole | undefined, { wasm }: Options): Promise<void> {
-        this.defaults = (await loaded(wasm)).defaultScene();
+    private async started(
+        frames: Frames,
+        hole: BlackHole,
+        before: BlackHole | undefined,
+        { wasm }: Options,
+    ): Promise<void> {
+        const defaults = (await loaded(wasm)).defaultScene();
+        if (frames !== this.frames) {
+            // The element was removed meanwhile, and may have other frames already.
+            return;
+        }
+        this.defaults = defaults;
         if (before !== undefined) {
             replace(hole, before.scene);
         }
@@ -321,7 +339,7 @@ export class BhrHole extends Base {
             // After a pause of the frames, as in a tab behind others, time goes on from where it was.
             const seconds = Math.min(now - (this.lastTime ?? now), 1000) / 1000;
             const rate = Number(this.getAttribute("rate") ?? RATE);
-            hole.set({ time: (hole.scene.time ?? 0) + seconds * (Number.isFinite(rate) ? rate : RATE) });
+            hole.set({ time: Number(hole.scene.time ?? 0) + seconds * (Number.isFinite(rate) ? rate : RATE) });
             this.lastTime = now;
         }
         return true;

@@ -5,7 +5,7 @@
 
 import { BlackHole, type Options } from "./index.js";
 
-/** Who is told of frames. All but `failed` may throw, which `failed` is told then. */
+/** Who is told of frames. Errors that the others throw are passed to `failed`. */
 export interface Listener {
     /** A black hole with a tracer is there, and nothing set; `before`: the one whose device was lost. */
     started(hole: BlackHole, before: BlackHole | undefined): Promise<void> | void;
@@ -21,6 +21,8 @@ const BUDGET_MS = 33;
 const LEAST = 1 / 64;
 /** Pixels that a frame of the CPU tracer has at most, which takes a second or two. */
 const MOST_ON_CPU = 250000;
+/** Pixels along a side that every device has. */
+const MOST_SIDE = 8192;
 /** Milliseconds without a change after which all is at rest. */
 const REST_MS = 250;
 /** Losses of the device within a minute after which no new one is asked for. */
@@ -79,7 +81,7 @@ export class Frames {
         clearTimeout(this.rest);
         if (moving) {
             this.rest = setTimeout(() => this.settled(), REST_MS);
-            // A frame with all pixels may take long, and shows what is past.
+            // A frame with all pixels may take long, and would show a scene that is no longer set.
             if (this.underWay?.how === "still" && this.count > 0) {
                 this.underWay.signal.abort();
             }
@@ -180,7 +182,7 @@ export class Frames {
         const all = this.size.width * this.size.height;
         this.budget = Math.min(Math.max(this.budget, all * LEAST), all);
         const part = Math.sqrt(Math.min(how === "still" ? all : this.budget, most) / all);
-        const side = (length: number) => Math.max(Math.round(length * part), 1);
+        const side = (length: number) => Math.min(Math.max(Math.round(length * part), 1), MOST_SIDE);
         return { width: side(this.size.width), height: side(this.size.height) };
     }
 
@@ -191,7 +193,9 @@ export class Frames {
         let hole: BlackHole | undefined;
         try {
             hole = await BlackHole.create(canvas, await this.options);
-            await this.listener.started(hole, this.before);
+            if (!this.isOver) {
+                await this.listener.started(hole, this.before);
+            }
             if (this.isOver) {
                 throw new Error("the element was removed");
             }

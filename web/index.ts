@@ -40,7 +40,7 @@ export interface FrameOptions {
 export interface CanvasOptions extends FrameOptions {
     /** The pixels of the canvas from this frame on, until which it keeps its picture; by default `canvas.width`. */
     width?: number | undefined;
-    /** Likewise. */
+    /** Likewise the height; by default `canvas.height`. */
     height?: number | undefined;
 }
 
@@ -136,33 +136,35 @@ export class BlackHole {
      * options ask for. Resolves when the frame is there. While a frame is under way, further calls have one more frame
      * made, of the scene as it is when that begins, and with the last call's options.
      */
-    render(options: CanvasOptions = {}): Promise<void> {
+    async render(options?: CanvasOptions | null): Promise<void> {
         const canvas = this.canvas;
         if (canvas === undefined) {
-            return Promise.reject(new TypeError("there is no canvas: create it with one, or ask for an image"));
+            throw new TypeError("there is no canvas: create it with one, or ask for an image");
         }
-        const { width = canvas.width, height = canvas.height } = options;
-        const wrong = mistakeIn(width, height);
-        if (wrong !== undefined) {
-            return Promise.reject(wrong);
-        }
-        this.wanted = options;
+        const asked = checked(options);
+        checkSize(asked.width ?? canvas.width, asked.height ?? canvas.height);
+        this.wanted = asked;
         this.next ??= this.after(() => {
             this.next = undefined;
             const { width = canvas.width, height = canvas.height, signal } = this.wanted;
+            // Two tracers paint a canvas in turn, each of which has to configure it anew.
+            if (painters.get(canvas) !== this.traces) {
+                painters.set(canvas, this.traces);
+                this.traces.forgetCanvas();
+            }
             return this.traces.paint(textOf(this.settings), canvas, [width, height], signal);
         });
         return this.next;
     }
 
     /** The frame in memory, in 8 bits a channel. */
-    async image(width: number, height: number, options: FrameOptions = {}): Promise<ImageData> {
+    async image(width: number, height: number, options?: FrameOptions | null): Promise<ImageData> {
         const { pixels } = await this.pixels(width, height, "rgba8", options);
         return new ImageData(pixels as Uint8ClampedArray<ArrayBuffer>, width, height);
     }
 
     /** The frame's light before the film: linear, premultiplied, in floats; red, green, blue, alpha of each pixel. */
-    async light(width: number, height: number, options: FrameOptions = {}): Promise<Float32Array> {
+    async light(width: number, height: number, options?: FrameOptions | null): Promise<Float32Array> {
         return (await this.pixels(width, height, "rgba32f", options)).pixels as Float32Array;
     }
 
@@ -171,12 +173,18 @@ export class BlackHole {
      * `undefined` takes it away. Set `sky: { flags: ["map"] }` to see it. A link does not hold it.
      */
     async setSkyMap(picture: ImageData | ImageBitmap | undefined): Promise<void> {
+        if (!(picture === undefined || picture instanceof ImageData || picture instanceof ImageBitmap)) {
+            throw new TypeError("a sky map is an ImageData or an ImageBitmap; createImageBitmap makes one of others");
+        }
         const pixels = picture instanceof ImageBitmap ? pixelsOf(picture) : picture;
         return this.after(() => this.traces.setSkyMap(pixels));
     }
 
     /** Gives the film the LUT in the text of a .cube file; `undefined` takes it away. A link does not hold it. */
-    setFilmLut(cube: string | undefined): Promise<void> {
+    async setFilmLut(cube: string | undefined): Promise<void> {
+        if (cube !== undefined) {
+            checkText(cube, "a LUT");
+        }
         return this.after(() => this.traces.setFilmLut(cube));
     }
 
@@ -185,11 +193,8 @@ export class BlackHole {
      * upper left corner, (0.5, 0.5) the middle of the first pixel. Throws bhr.h's messages.
      */
     ray(x: number, y: number, width: number, height: number): TracedRay {
-        const wrong = mistakeIn(width, height);
-        if (wrong !== undefined) {
-            throw wrong;
-        }
-        return this.wasm.tracedRay(textOf(this.settings), 0, x, y, width, height) as TracedRay;
+        checkSize(width, height);
+        return this.wasm.tracedRay(textOf(this.settings), 0, Number(x), Number(y), width, height) as TracedRay;
     }
 
     /** Numbers about the hole and the camera's observer, as they are set: bhr.h's BhrHoleInfo. */
@@ -197,11 +202,14 @@ export class BlackHole {
         return this.wasm.holeInfo(textOf(this.settings), 0) as HoleInfo;
     }
 
-    private async pixels(width: number, height: number, format: Pixels, { signal }: FrameOptions): Promise<Image> {
-        const wrong = mistakeIn(width, height);
-        if (wrong !== undefined) {
-            throw wrong;
-        }
+    private async pixels(
+        width: number,
+        height: number,
+        format: Pixels,
+        options: FrameOptions | null | undefined,
+    ): Promise<Image> {
+        const { signal } = checked(options);
+        checkSize(width, height);
         const text = textOf(this.settings);
         return this.after(() => this.traces.image(text, [width, height], format, signal));
     }
@@ -216,6 +224,10 @@ export class BlackHole {
      * Throws for what is no scene, or names files, and changes nothing.
      */
     read(text: string, seconds = 0): this {
+        checkText(text, "a scene file");
+        if (!Number.isFinite(seconds)) {
+            throw new RangeError(`seconds is ${String(seconds)}; it must be finite`);
+        }
         this.settings = settingsOfText(this.wasm.wholeScene(text, seconds));
         return this;
     }
@@ -227,6 +239,7 @@ export class BlackHole {
 
     /** Sets all that a link says, in place of what was set. Throws for one that says no scene, and changes nothing. */
     load(link: string): this {
+        checkText(link, "a link");
         const settings = settingsOf(link, this.wasm.defaultScene());
         this.wasm.checkScene(textOf(settings), 0);
         this.settings = settings;
@@ -261,9 +274,30 @@ function pixelsOf(picture: ImageBitmap): ImageData {
     return place.getImageData(0, 0, picture.width, picture.height);
 }
 
-/** The mistake in a frame's size, if there is one. */
-function mistakeIn(width: number, height: number): RangeError | undefined {
-    const sides = Object.entries({ width, height });
-    const wrong = sides.find(([, side]) => !Number.isInteger(side) || side < 1 || side > 0xffffffff);
-    return wrong && new RangeError(`${wrong[0]} is ${wrong[1]}; it must be a whole number from 1 on`);
+/** Which tracer has painted a canvas last. */
+const painters = new WeakMap<HTMLCanvasElement, Traces>();
+
+/** The options of a frame. Throws for a signal that is none: the module would wait for it for ever. */
+function checked<T extends FrameOptions>(options: T | null | undefined): T {
+    const { signal } = options ?? {};
+    if (signal !== undefined && !(signal instanceof AbortSignal)) {
+        throw new TypeError("signal is no AbortSignal");
+    }
+    return (options ?? {}) as T;
+}
+
+/** Throws for a size that no frame has. */
+function checkSize(width: number, height: number): void {
+    for (const [name, side] of Object.entries({ width, height })) {
+        if (!Number.isInteger(side) || side < 1 || side > 0xffffffff) {
+            throw new RangeError(`${name} is ${String(side)}; it must be a whole number from 1 on`);
+        }
+    }
+}
+
+/** Throws for what is no text, which the module cannot take. */
+function checkText(text: unknown, name: string): void {
+    if (typeof text !== "string") {
+        throw new TypeError(`${name} is text; this is ${text === null ? "null" : `a ${typeof text}`}`);
+    }
 }

@@ -70,7 +70,7 @@ export function link(settings: Settings, defaults: string): string {
 }
 
 /** A value of a link, of the kind that the same one has in a new scene. */
-function readValue(text: string, usual: Value | undefined): Value {
+function readValue(text: string, usual: Value | undefined, isWhole: boolean): Value {
     const one = (part: string, like: Value | undefined): Value => {
         const plain = decodeURIComponent(part);
         if (typeof like === "string") {
@@ -80,7 +80,8 @@ function readValue(text: string, usual: Value | undefined): Value {
             return plain === "true";
         }
         if (plain === "NaN" || (/^[-+]?(\d|\.\d|Infinity$)/.test(plain) && !Number.isNaN(Number(plain)))) {
-            return numberOf(plain);
+            // Only what is whole by its nature, as a seed is, keeps digits beyond those of a double.
+            return isWhole ? numberOf(plain) : Number(plain);
         }
         return plain;
     };
@@ -110,6 +111,9 @@ export function settingsOf(link: string, defaults: string): Settings {
             throw new RangeError(`"${name.slice(0, 80)}" is no name of a scene's`);
         }
         if (path.length === 1 && LISTS.includes(name)) {
+            if (text !== "") {
+                throw new RangeError(`${name} is a list, of which links name each part: ${name}.0`);
+            }
             settings[name] = [];
             continue;
         }
@@ -120,7 +124,7 @@ export function settingsOf(link: string, defaults: string): Settings {
             const isList = depth === 0 && LISTS.includes(word);
             const isStruct = depth === 1 && LISTS.includes(path[0] as string);
             if (depth === path.length - 1 && !isStruct) {
-                into[index] = readValue(text, usual.get(general(name)));
+                into[index] = readValue(text, usual.get(general(name)), word === "seed");
             } else {
                 into[index] ??= isList ? [] : {};
                 place = into[index] as Record<string, unknown>;
@@ -135,8 +139,8 @@ export function settingsOf(link: string, defaults: string): Settings {
 
 /** Structs of a list are named in order. */
 function indexOf(word: string, length: number, name: string): number {
-    const index = Number(word);
-    if (!Number.isInteger(index) || index < 0 || index > length) {
+    const index = /^\d+$/.test(word) ? Number(word) : NaN;
+    if (!(index <= length)) {
         throw new RangeError(`${name} comes before those of lower numbers`);
     }
     return index;

@@ -10,7 +10,7 @@ let loading: Promise<unknown> | undefined;
 
 let end!: (error: Error) => void;
 
-/** Rejects when the module has ended by a bug: what was asked of it is never answered. */
+/** Rejects when the module has panicked: what was asked of it is never answered. */
 export const ended = new Promise<never>((_, reject) => (end = reject));
 // A page that awaits nothing of the module need not hear of it.
 ended.catch(() => undefined);

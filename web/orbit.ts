@@ -28,7 +28,7 @@ export function orbitOf(camera: Settings["camera"], usual: Vector): Orbit {
         const { distance, azimuth, elevation } = orbit;
         return { distance: Number(distance), azimuth: radians(azimuth), elevation: radians(elevation) };
     }
-    const [x, y, z] = camera?.position ?? usual;
+    const [x = 0, y = 0, z = 0] = (camera?.position ?? usual).map(Number);
     const distance = Math.hypot(x, y, z);
     return { distance, azimuth: Math.atan2(y, x), elevation: Math.asin(z / (distance || 1)) };
 }

@@ -59,6 +59,28 @@ export function isTable(value: Value | undefined): value is Table {
     return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
+/** An object of a script's as settings: arrays of numbers as lists. Throws for objects that are no plain ones. */
+function plain(value: unknown, name: string): Value {
+    if (ArrayBuffer.isView(value) && !(value instanceof DataView)) {
+        return [...(value as unknown as Iterable<number | bigint>)];
+    }
+    if (Array.isArray(value)) {
+        return value.map((part: unknown) => plain(part, name));
+    }
+    if (typeof value !== "object" || value === null) {
+        return value as Value;
+    }
+    const prototype: unknown = Object.getPrototypeOf(value);
+    if (prototype !== null && Object.getPrototypeOf(prototype) !== null) {
+        throw new TypeError(`${name} is a ${value.constructor?.name ?? "class"}; settings are plain objects`);
+    }
+    const pairs = Object.entries(value).map(([name, part]): [string, Value] => [name, plain(part, name)]);
+    if (pairs.some(([name]) => name === "__proto__")) {
+        throw new TypeError('"__proto__" is no name of a scene\'s');
+    }
+    return Object.fromEntries(pairs);
+}
+
 function laidOver(below: Table, above: Table): Table {
     const all: Record<string, Value> = {};
     for (const [name, value] of Object.entries(below)) {
@@ -81,7 +103,7 @@ function laidOver(below: Table, above: Table): Table {
 
 /** What was set, with what is set now; both stay as they are. */
 export function merged(before: Settings, now: Settings): Settings {
-    return structuredClone(laidOver(before as Table, now as Table)) as Settings;
+    return laidOver(before as Table, plain(now, "the scene") as Table) as Settings;
 }
 
 function written(value: Value, name: string): string {

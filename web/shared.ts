@@ -2,7 +2,7 @@
 // shared.ts -- one tracer for many black holes of a page, each with a canvas of its own: browsers give a page few
 // devices, and each keeps buffers and compiled kernels. Knows no scene.
 
-import type { Stats, Traces } from "./tracers.js";
+import { destroyed, type Stats, type Traces } from "./tracers.js";
 
 /** A tracer, with those that take turns at it. */
 interface Pool {
@@ -80,10 +80,17 @@ class Share implements Traces {
         });
     }
 
+    forgetCanvas(): void {
+        this.pool.last = this.pool.last.then(() => this.traces.forgetCanvas()).catch(() => undefined);
+    }
+
     setSkyMap(picture: ImageData | undefined): Promise<void> {
         return this.inTurn(async () => {
             await this.traces.setSkyMap(picture);
-            this.map = this.pool.map = picture;
+            // It is read again after another holder's turn, whatever the page does with its own until then.
+            const { data, width, height } = picture ?? {};
+            const kept = data && new ImageData(new Uint8ClampedArray(data), width as number, height);
+            this.map = this.pool.map = kept;
         });
     }
 
@@ -95,6 +102,9 @@ class Share implements Traces {
     }
 
     loseDevice(): void {
+        if (this.isOver) {
+            throw destroyed();
+        }
         this.traces.loseDevice();
     }
 
@@ -127,7 +137,7 @@ class Share implements Traces {
     private inTurn<T>(work: () => Promise<T>): Promise<T> {
         const done = this.pool.last.then(async () => {
             if (this.isOver) {
-                throw new Error("the black hole was destroyed");
+                throw destroyed();
             }
             const made = await work();
             this.stats = this.traces.stats;

@@ -4,7 +4,7 @@
 
 import { ended, unlessEnded, type loaded, type Source } from "./load.js";
 import type { Answer, Order } from "./worker.js";
-import type { Tracer } from "./wasm/bhr.js";
+import type { DeviceHandle, Tracer } from "./wasm/bhr.js";
 
 /** Formats of images in memory. */
 export type Pixels = "rgba8" | "rgba32f";
@@ -49,6 +49,8 @@ export interface Traces {
     image(scene: string, size: Size, format: Pixels, signal?: AbortSignal): Promise<Image>;
     setSkyMap(picture: ImageData | undefined): Promise<void>;
     setFilmLut(cube: string | undefined): Promise<void>;
+    /** Another tracer has painted in the canvas of the next frame. */
+    forgetCanvas(): void;
     loseDevice(): void;
     end(): void;
 }
@@ -82,10 +84,14 @@ export class GpuTracer implements Traces {
     /** Kept here: the module lends a tracer that has a frame under way to nobody. */
     stats: Stats;
     private readonly tell: (error: Error) => void;
+    /** Apart from the tracer, so that it can be lost while a frame is under way. */
+    private readonly device: DeviceHandle;
+    private isOver = false;
 
     private constructor(private readonly tracer: Tracer) {
         this.adapter = tracer.adapter() as Adapter;
         this.stats = tracer.stats() as Stats;
+        this.device = tracer.device();
         const { promise, resolve } = promised<Error>();
         [this.lost, this.tell] = [promise, resolve];
     }
@@ -99,31 +105,52 @@ export class GpuTracer implements Traces {
     }
 
     async paint(scene: string, canvas: HTMLCanvasElement, [width, height]: Size, signal?: AbortSignal): Promise<void> {
+        this.check();
         await unlessEnded(this.tracer.paint(scene, 0, canvas, width, height, signal));
         this.stats = this.tracer.stats() as Stats;
     }
 
     async image(scene: string, [width, height]: Size, format: Pixels, signal?: AbortSignal): Promise<Image> {
+        this.check();
         const bytes = await unlessEnded(this.tracer.image(scene, 0, width, height, format === "rgba32f", signal));
         this.stats = this.tracer.stats() as Stats;
         return pixelsOf(bytes, format);
     }
 
     async setSkyMap(picture: ImageData | undefined): Promise<void> {
+        this.check();
         const { width = 0, height = 0 } = picture ?? {};
         await unlessEnded(this.tracer.setSkyMap(bytesOf(picture), width, height));
     }
 
     async setFilmLut(cube: string | undefined): Promise<void> {
+        this.check();
         this.tracer.setFilmLut(cube);
     }
 
+    forgetCanvas(): void {
+        this.check();
+        this.tracer.forgetCanvas();
+    }
+
     loseDevice(): void {
-        this.tracer.loseDevice();
+        this.check();
+        this.device.lose();
     }
 
     end(): void {
-        this.tracer.free();
+        if (!this.isOver) {
+            this.isOver = true;
+            this.device.free();
+            this.tracer.free();
+        }
+    }
+
+    /** Throws once it has ended. */
+    private check(): void {
+        if (this.isOver) {
+            throw destroyed();
+        }
     }
 }
 
@@ -132,6 +159,8 @@ export class CpuTracer implements Traces {
     readonly lost: Promise<Error>;
     stats: Stats;
     private waiting: { done: (answer: Answer) => void; failed: (error: Error) => void } | undefined;
+    /** Why the worker answers no more. */
+    private over: Error | undefined;
 
     private constructor(
         private readonly worker: Worker,
@@ -143,7 +172,10 @@ export class CpuTracer implements Traces {
         this.lost = promise;
         worker.onmessage = ({ data }: MessageEvent<Answer>) => this.settle(({ done }) => done(data));
         worker.onerror = (event) => {
-            const error = new Error(`the worker of the CPU tracer ended: ${event.message}`);
+            const message = `the worker of the CPU tracer ended: ${event.message}`;
+            const error = Object.assign(new Error(message), { code: "DEVICE_LOST" });
+            this.over ??= error;
+            worker.terminate();
             resolve(error);
             this.settle(({ failed }) => failed(error));
         };
@@ -199,7 +231,14 @@ export class CpuTracer implements Traces {
         return this.take({ kind: "lut", cube });
     }
 
+    forgetCanvas(): void {
+        // A canvas' 2d context is the page's, whoever draws.
+    }
+
     private ask(order: Order): Promise<Answer> {
+        if (this.over !== undefined) {
+            return Promise.reject(this.over);
+        }
         return new Promise((done, failed) => {
             this.waiting = { done, failed };
             this.worker.postMessage(order);
@@ -214,13 +253,16 @@ export class CpuTracer implements Traces {
     }
 
     loseDevice(): void {
+        if (this.over !== undefined) {
+            throw this.over;
+        }
         this.worker.onerror?.(new ErrorEvent("error", { message: "a test asked" }));
-        this.end();
     }
 
     end(): void {
         this.worker.terminate();
-        const error = new Error("the black hole was destroyed");
+        const error = destroyed();
+        this.over ??= error;
         this.settle(({ failed }) => failed(error));
     }
 
@@ -231,6 +273,11 @@ export class CpuTracer implements Traces {
             how(waiting);
         }
     }
+}
+
+/** The error of calls after the end. */
+export function destroyed(): Error {
+    return Object.assign(new Error("the black hole was destroyed"), { code: "INVALID_STATE" });
 }
 
 /** Throws once the signal is aborted, as the module does. */

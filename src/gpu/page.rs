@@ -106,7 +106,7 @@ async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
     Ok(stars)
 }
 
-/// Until the page has done what else it has to do.
+/// Gives the page its thread until its next task.
 pub async fn next_task() {
     #[wasm_bindgen]
     extern "C" {

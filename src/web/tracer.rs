@@ -8,11 +8,11 @@ use super::text::scene_of;
 use crate::capi::scene_file::Moment;
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{Canvas, CanvasTexture, FrameTarget, GpuTracer, next_task};
+use crate::gpu::{Canvas, CanvasTexture, Device, FrameTarget, GpuTracer, next_task};
 use crate::image::{ImageRef, Layout, Lut, PixelFormat};
 use crate::platform::Instant;
 use crate::scene::Scene;
-use crate::sky::{GrowingMap, SkyMap};
+use crate::sky::{GrowingMap, MAX_MAP_SIZE, SkyMap};
 use crate::tracer::{FrameRequest, FrameStats, StatsBoard, Tile, TileSink};
 use js_sys::Object;
 use std::collections::VecDeque;
@@ -34,7 +34,7 @@ enum Traces {
 /// A tracer of a page.
 #[wasm_bindgen]
 pub struct Tracer {
-    /// Goes before the device that it belongs to.
+    /// Dropped before the device that it belongs to, by the order of fields.
     canvas: Option<Canvas>,
     traces: Traces,
     /// The picture of the sky flag MAP, and the film's table of colours.
@@ -93,13 +93,18 @@ impl Tracer {
         }
     }
 
-    /// Destroys the device, as a driver may at any time: for tests.
-    #[wasm_bindgen(js_name = loseDevice)]
-    pub fn lose_device(&self) -> Result<(), js_sys::Error> {
-        match &self.traces {
-            Traces::Gpu(tracer) => tracer.device().scoped("destroying the device", |raw| raw.destroy()).map_err(thrown),
-            Traces::Cpu(_) => Ok(()),
-        }
+    /// The device, apart from the tracer, which is lent to nobody while a frame is under way.
+    pub fn device(&self) -> DeviceHandle {
+        DeviceHandle(match &self.traces {
+            Traces::Gpu(tracer) => Some(tracer.device()),
+            Traces::Cpu(_) => None,
+        })
+    }
+
+    /// Another tracer has painted in the canvas.
+    #[wasm_bindgen(js_name = forgetCanvas)]
+    pub fn forget_canvas(&mut self) {
+        self.canvas = None;
     }
 
     /// Gives the sky flag MAP its picture, packed rows of RGBA in 8 bits, or takes it away (bhr_set_sky_map), a part in
@@ -153,6 +158,21 @@ impl Tracer {
     }
 }
 
+/// A tracer's device.
+#[wasm_bindgen]
+pub struct DeviceHandle(Option<Arc<Device>>);
+
+#[wasm_bindgen]
+impl DeviceHandle {
+    /// Destroys the device, as a driver may at any time: for tests.
+    pub fn lose(&self) -> Result<(), js_sys::Error> {
+        match &self.0 {
+            Some(device) => device.scoped("destroying the device", |raw| raw.destroy()).map_err(thrown),
+            None => Ok(()),
+        }
+    }
+}
+
 /// A page's wish that a frame end.
 struct Aborts(Option<AbortSignal>);
 
@@ -172,7 +192,9 @@ impl Aborts {
 async fn sky_map(pixels: &[u8], [width, height]: [u32; 2]) -> Result<SkyMap> {
     let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), pixels)?;
     let mut growing = GrowingMap::new([width, height])?;
-    while !growing.grow_from(&image, (TEXELS_A_TASK / width.max(1)).max(1))? {
+    // A level is at least as wide as it is high.
+    let columns = width.max(height).min(MAX_MAP_SIZE[0]);
+    while !growing.grow_from(&image, (TEXELS_A_TASK / columns.max(1)).max(1))? {
         next_task().await;
     }
     Ok(growing.done())
@@ -254,12 +276,18 @@ impl Tracer {
     ) -> Result<()> {
         let start = Instant::now();
         let Traces::Gpu(tracer) = &mut self.traces else { return Ok(()) };
+        aborts.check()?;
+        let (device, size) = (tracer.device(), [request.width, request.height]);
+        let most = device.limits().max_texture_dimension_2d;
+        for (name, side) in ["width", "height"].into_iter().zip(size).filter(|(_, side)| *side > most) {
+            return Err(Error::argument(format!("{name} is {side}; a canvas of this device has at most {most}")));
+        }
         let ready = tracer.make_ready(scene, request, true, &|| aborts.check()).await?;
+        aborts.check()?;
         let canvas = match &mut self.canvas {
             Some(canvas) if canvas.is_of(element) => canvas,
             place => place.insert(Canvas::new(tracer, element.clone())?),
         };
-        let (device, size) = (tracer.device(), [request.width, request.height]);
         let stats = if ready.steps <= AHEAD as u64 {
             let texture = canvas.texture(&device, size)?;
             let traced = in_one_task(tracer, scene, request, texture).await;

@@ -75,7 +75,7 @@ export class Files {
             notice("The link is on the clipboard.");
         } catch {
             // Pages without HTTPS and some browsers have no clipboard: the address bar has the link as well.
-            notice("This browser gives no clipboard: copy the page's address, which is the link.");
+            notice("The clipboard is not available: copy the page's address, which is the link.");
         }
     }
 

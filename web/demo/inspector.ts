@@ -24,7 +24,7 @@ const HALF = 100;
 const FATES: Record<string, string> = {
     captured: "captured: it comes from the horizon, and is black",
     escaped: "escaped: it comes from the sky",
-    unresolved: "unresolved: it takes too many steps",
+    unresolved: "unresolved: not finished within the step limit",
     invalid: "invalid: no light comes this way",
 };
 

@@ -69,7 +69,7 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
                 },
             },
             {
-                id: "near", name: "From near", about: "A tilted look across the disk, 15 M away",
+                id: "near", name: "Close up", about: "A tilted look across the disk, 15 M away",
                 settings: {
                     preset: "cinematic", hole: { spin: 0.9 }, camera: { ...orbit(15, 60, 13, 56), ...turn(3, 1, -24) },
                     disk: { outer_radius: 18, temperature: 3000, brightness: 0.15 }, sky: { map_brightness: 2 },
@@ -78,7 +78,7 @@ export const LOOKS: readonly { title: string; looks: readonly Look[] }[] = [
             },
             {
                 id: "crescent", name: "Crescent",
-                about: "Nearly along the disk: the side that comes outshines the other",
+                about: "Nearly edge-on: the approaching side outshines the receding one",
                 settings: {
                     preset: "cinematic", hole: { spin: 0.94 }, camera: orbit(40, 75, 1.6, 30),
                     disk: { outer_radius: 16, temperature: 3200, brightness: 0.43 },

@@ -33,7 +33,7 @@ const QUICK_MS = 20;
 
 const BY_CPU = "The processor traces, as the page's address asks, in double precision.";
 const NO_WEBGPU = "This browser gives the page no WebGPU, so the processor traces, in double precision: pictures are "
-    + "small and take seconds. Chrome and Edge 113, Firefox 141 and Safari 26, or newer, have WebGPU.";
+    + "small and take seconds. Chrome and Edge have WebGPU from version 113 on, Firefox on Windows from 141, Safari from 26.";
 
 function backendOf(text: string | null): Backend {
     return text === "cpu" || text === "webgpu" ? text : "auto";
@@ -86,7 +86,7 @@ async function fullScreen(): Promise<void> {
     } else if (typeof document.documentElement.requestFullscreen === "function") {
         await document.documentElement.requestFullscreen();
     } else {
-        notice("This browser shows no page on the full screen.");
+        notice("This browser does not support full screen.");
     }
 }
 

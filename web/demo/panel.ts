@@ -183,7 +183,7 @@ export class Panel {
         const { session } = this;
         const now = () => (session.value("effect_strengths") ?? [1, 1, 1]) as readonly number[];
         const row = rowOf("", { name: "strength", kind: "number", range: [0, 1], usual: 1,
-            about: "The factor of this effect counts to this power: for films. 1 is physics." });
+            about: "The factor of this effect is raised to this power, as films do it; 1 is physically right." });
         return slider({ ...row, label: `${STRENGTHS[index]}, strength` }, {
             get: () => now()[index],
             set: (value) => {

@@ -201,11 +201,11 @@ export class Session {
         const now = Date.now();
         this.losses = [...this.losses.filter((at) => now - at < 60000), now];
         if (this.losses.length > MOST_LOSSES) {
-            notice(`${error.message}. It was lost again and again: load the page anew.`, "error");
+            notice(`${error.message}. It was lost again and again: reload the page.`, "error");
             return;
         }
         const { scene } = this.current;
-        notice("The graphics device was lost. The picture comes back by itself.");
+        notice("The graphics device was lost. The picture is being restored.");
         this.current.destroy().catch(() => undefined);
         const hole = await BlackHole.create(canvasIn(this.stage), { backend: this.backend });
         this.current = hole.set(scene);
