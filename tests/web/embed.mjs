@@ -245,7 +245,7 @@ await test("elements share a device, trace where they are seen, and free it when
             name: second.shadowRoot.querySelector("[role=img]").ariaLabel };
     });
     holds(found.devices === 1 && found.below && found.other, JSON.stringify(found));
-    const sentence = "A black hole with a spin of -0.3 and an accretion disk, seen from 26.1 M away, 5.49 degrees";
+    const sentence = "A black hole of spin -0.3 with an accretion disk, seen from 26.1 M away, 5.49 degrees";
     holds(found.name.startsWith(sentence), found.name);
     await seen("two");
     const after = await page.evaluate(async () => {

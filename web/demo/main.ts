@@ -33,7 +33,8 @@ const QUICK_MS = 20;
 
 const BY_CPU = "The processor traces, as the page's address asks, in double precision.";
 const NO_WEBGPU = "This browser gives the page no WebGPU, so the processor traces, in double precision: pictures are "
-    + "small and take seconds. Chrome and Edge have WebGPU from version 113 on, Firefox on Windows from 141, Safari from 26.";
+    + "small and take seconds. Chrome and Edge have WebGPU from version 113 on, Firefox on "
+    + "Windows from 141, Safari from 26.";
 
 function backendOf(text: string | null): Backend {
     return text === "cpu" || text === "webgpu" ? text : "auto";
