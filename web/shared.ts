@@ -87,7 +87,7 @@ class Share implements Traces {
     setSkyMap(picture: ImageData | undefined): Promise<void> {
         return this.inTurn(async () => {
             await this.traces.setSkyMap(picture);
-            // It is read again after another holder's turn, whatever the page does with its own until then.
+            // A copy: after another holder's turn it is read again, and the page may have changed its own by then.
             const { data, width, height } = picture ?? {};
             const kept = data && new ImageData(new Uint8ClampedArray(data), width as number, height);
             this.map = this.pool.map = kept;

@@ -20,7 +20,10 @@ const SCENES = {
     "a spinning hole": { hole: { spin: 0.9 } },
     "four samples": { quality: { samples_per_pixel: 4 }, camera: { orbit: { distance: 12, elevation: 0.3 } } },
     "volume with structure": { hole: { spin: 0.6 }, disk: false, volumes: [{ shape: "disk" }] },
-    "inside the horizon": { camera: { position: [0, 1.2, 0.4], motion: "free_fall", fov_y: 1.6 }, disk: { inner_radius: 4 } },
+    "inside the horizon": {
+        camera: { position: [0, 1.2, 0.4], motion: "free_fall", fov_y: 1.6 },
+        disk: { inner_radius: 4 },
+    },
 };
 writeFileSync(join(scratch, "scenes.json"), JSON.stringify({ scenes: SCENES, size: [width, height] }));
 
