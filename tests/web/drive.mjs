@@ -238,7 +238,7 @@ await test("a first frame leaves the page its thread, and is shown before its ed
     const [shown, refined] = [found.order.indexOf("submit"), found.order.indexOf("refine")];
     holds(shown > 0 && refined > shown && found.order.indexOf("submit", refined) > 0, found.order.join(" "));
     holds(found.frames === 1, `${found.frames} frames for one call`);
-    // 0.1 s on an idle machine; tests run beside others. All of it in one task took 1.6 s.
+    // 0.15 s on an idle machine; tests run beside others. All of it in one task took 1.6 s.
     holds(Math.max(0, ...found.tasks) < 600, `the page stood still for ${found.tasks.join(", ")} ms`);
     holds(said.length === 0, said.join("\n"));
 });
