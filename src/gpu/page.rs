@@ -12,6 +12,7 @@ use super::kernel::key::KernelKind;
 use super::kernel::variant::{PixelTarget, StoredFormat};
 use crate::emit::streaks::Streaks;
 use crate::error::{Error, ErrorKind, Result};
+use crate::platform::Instant;
 use crate::scene::Scene;
 use crate::sky::index::StarIndex;
 use crate::sky::milky_way::Drawing;
@@ -21,6 +22,7 @@ use std::future::poll_fn;
 use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Poll, Waker};
+use std::time::Duration;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::JsFuture;
 use wgpu::web_sys::HtmlCanvasElement;
@@ -96,14 +98,23 @@ async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
         next_task().await;
         left = drawing.draw(ROWS_A_TASK)?;
     }
-    next_task().await;
+    let begun = Instant::now();
     let stars = scene.stars()?;
-    next_task().await;
+    rest(begun).await;
     if setup.variants.shade.turbulent {
+        let begun = Instant::now();
         Streaks::shared()?;
-        next_task().await;
+        rest(begun).await;
     }
     Ok(stars)
+}
+
+/// After work that was begun then: gives the page its thread if it took long. What is there already takes no time, and
+/// browsers put off a frame's next timer by 4 ms.
+async fn rest(begun: Instant) {
+    if begun.elapsed() > LONG {
+        next_task().await;
+    }
 }
 
 /// Gives the page its thread until its next task.
@@ -151,6 +162,9 @@ pub struct Ready {
     /// Kept while somebody has it.
     _stars: Arc<StarIndex>,
 }
+
+/// Work of more than this ends a task of the page's.
+const LONG: Duration = Duration::from_millis(4);
 
 /// Rows of the Milky Way's finest level that are drawn in one task: some 15 ms of a processor's.
 const ROWS_A_TASK: u32 = 32;

@@ -240,7 +240,9 @@ impl Tracer {
             Traces::Cpu(tracer) => tracer.render(&scene, &request, &mut sink, &mut |_| true)?,
             Traces::Gpu(tracer) => {
                 let _ready = tracer.make_ready(&scene, &request, false, &|| aborts.check()).await?;
-                in_tasks(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await?
+                let traced = in_tasks(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await;
+                // What a frame that failed has left is nothing to go on from.
+                traced.inspect_err(|_| tracer.forget())?
             }
         };
         self.stats.publish(stats, start.elapsed());
@@ -294,7 +296,8 @@ impl Tracer {
             traced.inspect_err(|_| tracer.forget())?
         } else {
             let target = FrameTarget::screen(canvas.kept(&device, size)?);
-            let stats = in_tasks(tracer, scene, request, target, &mut |_, _, _| Ok(()), aborts).await?;
+            let traced = in_tasks(tracer, scene, request, target, &mut |_, _, _| Ok(()), aborts).await;
+            let stats = traced.inspect_err(|_| tracer.forget())?;
             canvas.show_kept(&device)?;
             stats
         };
@@ -327,21 +330,8 @@ async fn in_one_task(
     Ok(stats)
 }
 
-/// Traces a frame by a few steps at a time, and ends before the next one where `aborts` says so. A frame that fails is
-/// forgotten.
+/// Traces a frame by a few steps at a time, and ends before the next one where `aborts` says so.
 async fn in_tasks(
-    tracer: &mut GpuTracer,
-    scene: &Scene,
-    request: &FrameRequest,
-    target: FrameTarget<'_>,
-    sink: &mut TileSink<'_>,
-    aborts: &Aborts,
-) -> Result<FrameStats> {
-    let traced = try_in_tasks(tracer, scene, request, target, sink, aborts).await;
-    traced.inspect_err(|_| tracer.forget())
-}
-
-async fn try_in_tasks(
     tracer: &mut GpuTracer,
     scene: &Scene,
     request: &FrameRequest,

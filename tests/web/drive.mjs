@@ -230,14 +230,26 @@ await test("a first frame leaves the page its thread, and is shown before its ed
         const first = one.stats.frame_index;
         await one.render();
         const second = one.stats.frame_index;
+        // A frame for which everything is there gives the page's thread away only while the GPU works.
+        const timer = window.setTimeout;
+        const waits = [];
+        for (let i = 0; i < 4; i++) {
+            let count = 0;
+            window.setTimeout = (...given) => (count++, timer(...given));
+            await one.render();
+            waits.push(count);
+        }
+        window.setTimeout = timer;
         await new Promise((done) => setTimeout(done, 100));
         await one.destroy();
-        return { order, frames: second - first, tasks };
+        return { order, frames: second - first, tasks, waits };
     });
     await other.close();
     const [shown, refined] = [found.order.indexOf("submit"), found.order.indexOf("refine")];
     holds(shown > 0 && refined > shown && found.order.indexOf("submit", refined) > 0, found.order.join(" "));
     holds(found.frames === 1, `${found.frames} frames for one call`);
+    // On a busy machine what is there may seem to take long now and then.
+    holds(Math.min(...found.waits) === 0, `a frame waits for ${found.waits.join(", ")} timers`);
     // 0.15 s on an idle machine; tests run beside others. All of it in one task took 1.6 s.
     holds(Math.max(0, ...found.tasks) < 600, `the page stood still for ${found.tasks.join(", ")} ms`);
     holds(said.length === 0, said.join("\n"));
