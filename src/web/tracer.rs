@@ -241,7 +241,7 @@ impl Tracer {
             Traces::Gpu(tracer) => {
                 let _ready = tracer.make_ready(&scene, &request, false, &|| aborts.check()).await?;
                 let traced = in_tasks(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await;
-                // What a frame that failed has left is nothing to go on from.
+                // Nobody knows what the tables of lenses hold after a frame that failed.
                 traced.inspect_err(|_| tracer.forget())?
             }
         };
