@@ -18,6 +18,7 @@ mod film;
 mod render;
 mod join;
 
+use bhr::image::Effort;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use ending::Ending;
 use std::path::PathBuf;
@@ -189,8 +190,13 @@ fn man(given: &ArgMatches) -> Result<(), Ending> {
 }
 
 fn compression() -> Arg {
-    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 4")
+    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 2")
         .value_parser(value_parser!(i32).range(1..=9))
+}
+
+/// The level of `--compression`; without it, one that a GPU need not wait for long.
+pub(crate) fn effort(given: &ArgMatches) -> Effort {
+    Effort(given.get_one::<i32>("compression").copied().unwrap_or(2))
 }
 
 /// The most threads that write files.

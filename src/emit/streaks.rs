@@ -15,7 +15,7 @@
 
 use super::lattice::Between;
 use crate::allocate::{collected, filled, with_room};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::random::mix;
 use half::f16;
 use std::f64::consts::SQRT_2;
@@ -125,27 +125,65 @@ impl Noise {
     }
 }
 
-/// The picture: g row by row. Only operations that every machine rounds alike.
-fn drawn() -> Result<Vec<f32>> {
-    let noises = (0..OCTAVES).map(|octave| Noise::new(octave, octave)).collect::<Result<Vec<_>>>()?;
-    let columns = noises.iter().map(Noise::columns).collect::<Result<Vec<_>>>()?;
-    let displacement = [Noise::new(0, OCTAVES)?, Noise::new(1, OCTAVES + 1)?];
-    let mut all = with_room(STREAK_COLUMNS * STREAK_ROWS, "the disk's streaks")?;
-    for y in 0..STREAK_ROWS {
+static SHARED: OnceLock<Streaks> = OnceLock::new();
+
+/// The streaks while they are drawn. Only operations that every machine rounds alike.
+pub struct Drawing {
+    /// The octaves, and each one's columns.
+    noises: Vec<Noise>,
+    columns: Vec<Vec<Between>>,
+    displacement: [Noise; 2],
+    /// The sum of the octaves, row by row.
+    sums: Vec<f32>,
+}
+
+impl Drawing {
+    /// The drawing that [`Streaks::shared`] waits for; `None`: it is complete. Errors: OUT_OF_MEMORY.
+    pub fn begun() -> Result<Option<Self>> {
+        if SHARED.get().is_some() {
+            return Ok(None);
+        }
+        let noises = (0..OCTAVES).map(|octave| Noise::new(octave, octave)).collect::<Result<Vec<_>>>()?;
+        let columns = noises.iter().map(Noise::columns).collect::<Result<Vec<_>>>()?;
+        let displacement = [Noise::new(0, OCTAVES)?, Noise::new(1, OCTAVES + 1)?];
+        let sums = with_room(STREAK_COLUMNS * STREAK_ROWS, "the disk's streaks")?;
+        Ok(Some(Self { noises, columns, displacement, sums }))
+    }
+
+    /// Draws up to `rows` more rows, or, after the last one, finishes the picture. Returns what is left to do; `None`:
+    /// it is complete. Errors: OUT_OF_MEMORY.
+    pub fn draw(mut self, rows: usize) -> Result<Option<Self>> {
+        let first = self.sums.len() / STREAK_COLUMNS;
+        if first == STREAK_ROWS {
+            let streaks = Streaks::new(&finished(self.sums))?;
+            SHARED.get_or_init(|| streaks);
+            return Ok(None);
+        }
+        for y in first..first.saturating_add(rows).min(STREAK_ROWS) {
+            self.draw_row(y);
+        }
+        Ok(Some(self))
+    }
+
+    fn draw_row(&mut self, y: usize) {
         let row = 1.0 + (y as f32 + 0.5) / STREAK_ROWS as f32;
         for x in 0..STREAK_COLUMNS {
-            let [coarse, fine] = [0, 1].map(|k| displacement[k].at(&columns[k][x], row));
+            let [coarse, fine] = [0, 1].map(|k| self.displacement[k].at(&self.columns[k][x], row));
             let displaced = row + (DISPLACED / CELLS as f32) * (coarse + 0.5 * fine);
             let (mut sum, mut amplitude) = (0.0, 1.0);
-            for ((noise, columns), octave) in noises.iter().zip(&columns).zip(0..) {
+            for ((noise, columns), octave) in self.noises.iter().zip(&self.columns).zip(0..) {
                 let plain = noise.at(&columns[x], displaced);
                 let crease = if CREASED.contains(&octave) { CREASE } else { 0.0 };
                 sum += amplitude * (plain + crease * (CREASE_GAIN * plain.abs() - CREASE_OFFSET - plain));
                 amplitude *= FAINTER;
             }
-            all.push(sum);
+            self.sums.push(sum);
         }
     }
+}
+
+/// The picture, g row by row, of the sums of its octaves.
+fn finished(mut all: Vec<f32>) -> Vec<f32> {
     let deviation = |all: &[f32]| (all.iter().map(|g| g * g).sum::<f32>() / all.len() as f32).sqrt();
     let unit = deviation(&all).recip();
     for row in all.chunks_mut(STREAK_COLUMNS) {
@@ -156,7 +194,7 @@ fn drawn() -> Result<Vec<f32>> {
     }
     let scale = DEVIATION / deviation(&all);
     all.iter_mut().for_each(|g| *g *= scale);
-    Ok(all)
+    all
 }
 
 fn rounded(pair: [f32; 2]) -> [f32; 2] {
@@ -166,14 +204,11 @@ fn rounded(pair: [f32; 2]) -> [f32; 2] {
 impl Streaks {
     /// The streaks of this process, drawn at first use (some 0.1 s). Errors: OUT_OF_MEMORY.
     pub fn shared() -> Result<&'static Self> {
-        static SHARED: OnceLock<Streaks> = OnceLock::new();
-        match SHARED.get() {
-            Some(streaks) => Ok(streaks),
-            None => {
-                let streaks = Self::new(&drawn()?)?;
-                Ok(SHARED.get_or_init(|| streaks))
-            }
+        let mut left = Drawing::begun()?;
+        while let Some(drawing) = left {
+            left = drawing.draw(STREAK_ROWS)?;
         }
+        SHARED.get().ok_or_else(|| Error::internal("the streaks are drawn, and are not there"))
     }
 
     fn new(drawn: &[f32]) -> Result<Self> {

@@ -51,7 +51,7 @@ pub use kernel::kernels::KernelWaits;
 #[doc(hidden)]
 pub use kernel::wgsl::shader_sources;
 #[cfg(target_arch = "wasm32")]
-pub use page::{Canvas, CanvasTexture, next_task};
+pub use page::{Canvas, CanvasTexture, in_tasks};
 #[doc(hidden)]
 pub use window::present::Presenter;
 pub use window::swapchain::{Acquired, Swapchain};

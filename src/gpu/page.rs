@@ -6,16 +6,19 @@ use super::device::adapter::{Adapter, device_descriptor};
 use super::device::texture::{SCREEN, Texture, TextureKind};
 use super::device::wgpu_device::Device;
 use super::frame::plan::setup::{FrameTarget, Setup};
+use super::frame::resources::tables::{TablePart, Tables};
 use super::frame::submission::delivery::Delivery;
 use super::frame::tracer::GpuTracer;
 use super::kernel::key::KernelKind;
 use super::kernel::variant::{PixelTarget, StoredFormat};
-use crate::emit::streaks::Streaks;
+use crate::emit::streaks;
 use crate::error::{Error, ErrorKind, Result};
+use crate::physics::blackbody::BlackbodyTable;
 use crate::platform::Instant;
 use crate::scene::Scene;
 use crate::sky::index::StarIndex;
 use crate::sky::milky_way::Drawing;
+use crate::sky::shift::ShiftTable;
 use crate::tracer::FrameRequest;
 use js_sys::{Function, Promise};
 use std::future::poll_fn;
@@ -48,7 +51,7 @@ impl GpuTracer {
         let descriptor = device_descriptor(adapter.raw()?);
         let opened = adapter.raw()?.request_device(&descriptor).await.map_err(none)?;
         let device = Device::of(&adapter, descriptor.required_limits, opened);
-        Self::on(adapter, device)
+        in_a_task(|| Self::on(adapter, device)).await
     }
 
     /// Makes what such a frame needs, for the host or `shown` in an image, a part in each of the page's tasks:
@@ -79,46 +82,84 @@ impl GpuTracer {
         // The browser makes pipelines beside the page's thread, which meanwhile draws.
         let (kernels, stars) = both(kernels, drawn(scene, &setup)).await;
         let stars = kernels.and(stars)?;
+        let (tables, device) = (&mut self.tables, &self.device);
+        let tables = in_a_task(|| Tables::with_stars(tables, device, scene)).await?;
+        for part in TablePart::ALL {
+            in_a_task(|| tables.update(part, device, scene, &setup)).await?;
+        }
         Ok(Ready { steps: self.steps(scene, request, &setup, None, &delivery)?.count(), _stars: stars })
     }
 
     /// Whether the kernel that refines edges is missing for such a frame in an image. The browser takes longer to make
     /// it than all others, and a picture without it is nearly the same. Errors: as [`Self::begin`].
-    pub fn edges_are_late(&self, scene: &Scene, request: &FrameRequest) -> Result<bool> {
-        let setup = self.planner().set_up(scene, request, PixelTarget::SCREEN)?;
-        let missing = self.kernels.missing(&self.kernels_of(scene, Some(&setup)));
-        Ok(missing.iter().any(|key| matches!(key.kind, KernelKind::Refine(..))))
+    pub async fn edges_are_late(&self, scene: &Scene, request: &FrameRequest) -> Result<bool> {
+        let missing = in_a_task(|| {
+            let setup = self.planner().set_up(scene, request, PixelTarget::SCREEN)?;
+            Ok(self.kernels.missing(&self.kernels_of(scene, Some(&setup))))
+        });
+        Ok(missing.await?.iter().any(|key| matches!(key.kind, KernelKind::Refine(..))))
     }
 }
 
 /// The stars; and what else a frame shows is drawn.
 async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
-    let mut left = if setup.variants.shade.milky_way { Drawing::begun()? } else { None };
-    while let Some(drawing) = left {
-        next_task().await;
-        left = drawing.draw(ROWS_A_TASK)?;
-    }
-    let begun = Instant::now();
-    let stars = scene.stars()?;
-    rest(begun).await;
-    if setup.variants.shade.turbulent {
-        let begun = Instant::now();
-        Streaks::shared()?;
-        rest(begun).await;
-    }
+    let shows_milky_way = setup.variants.shade.milky_way;
+    let mut way = in_a_task(|| if shows_milky_way { Drawing::begun() } else { Ok(None) }).await?;
+    in_tasks(|| {
+        way = way.take().map(|drawing| drawing.draw(ROWS)).transpose()?.flatten();
+        Ok(way.is_none())
+    })
+    .await?;
+    in_a_task(BlackbodyTable::shared).await;
+    in_a_task(ShiftTable::shared).await;
+    let stars = stars(scene).await?;
+    let mut streaks = if setup.variants.shade.turbulent { streaks::Drawing::begun()? } else { None };
+    in_tasks(|| {
+        streaks = streaks.take().map(|drawing| drawing.draw(STREAK_ROWS)).transpose()?.flatten();
+        Ok(streaks.is_none())
+    })
+    .await?;
     Ok(stars)
 }
 
-/// After work that was begun then: gives the page its thread if it took long. What is there already takes no time, and
-/// browsers put off a frame's next timer by 4 ms.
-async fn rest(begun: Instant) {
-    if begun.elapsed() > LONG {
+/// [`Scene::stars`], made a few at a time.
+async fn stars(scene: &Scene) -> Result<Arc<StarIndex>> {
+    let field = scene.shown_field();
+    if scene.given_stars.is_some() || field.index_if_made().is_some() {
+        return scene.stars();
+    }
+    let mut growing = in_a_task(|| field.growing()).await?;
+    in_tasks(|| growing.grow(STARS)).await?;
+    in_a_task(|| field.share(growing.done())).await
+}
+
+/// Does one part of a piece of work after the other, until `part` returns that all is done, and gives the page its
+/// thread in between. Errors: those of `part`.
+pub async fn in_tasks(mut part: impl FnMut() -> Result<bool>) -> Result<()> {
+    loop {
+        let begun = Instant::now();
+        while begun.elapsed() < SLICE {
+            if part()? {
+                return Ok(());
+            }
+        }
         next_task().await;
     }
 }
 
+/// Does a part of a frame's work, and gives the page its thread if that took long. What is there already takes no time,
+/// and browsers put off a frame's next timer by 4 ms.
+async fn in_a_task<T>(work: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let done = work();
+    if begun.elapsed() > LONG {
+        next_task().await;
+    }
+    done
+}
+
 /// Gives the page its thread until its next task.
-pub async fn next_task() {
+async fn next_task() {
     #[wasm_bindgen]
     extern "C" {
         #[wasm_bindgen(js_name = setTimeout)]
@@ -166,8 +207,14 @@ pub struct Ready {
 /// Work of more than this ends a task of the page's.
 const LONG: Duration = Duration::from_millis(4);
 
-/// Rows of the Milky Way's finest level that are drawn in one task: some 15 ms of a processor's.
-const ROWS_A_TASK: u32 = 32;
+/// Parts of the same work share a task for so long.
+const SLICE: Duration = Duration::from_millis(12);
+
+/// A part, a few milliseconds of a processor's: rows of the Milky Way's finest level and of the disk's streaks, and
+/// stars that are counted or listed.
+const ROWS: u32 = 8;
+const STREAK_ROWS: usize = 16;
+const STARS: usize = 5000;
 
 impl Device {
     /// Until all that was submitted has run, or the device is gone, and the browser has told of all buffers whose

@@ -230,14 +230,17 @@ impl Scene {
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
     /// `StarField::index`.
     pub fn stars(&self) -> Result<Arc<StarIndex>> {
-        if let Some(stars) = &self.given_stars {
-            return Ok(stars.clone());
+        match &self.given_stars {
+            Some(stars) => Ok(stars.clone()),
+            None => self.shown_field().index(),
         }
+    }
+
+    /// The field whose index [`Self::stars`] gives where the host gave no stars.
+    pub fn shown_field(&self) -> StarField {
         let field = self.sky.star_field().unwrap_or(StarField::Catalogue);
-        if self.shows_stars() && self.view == View::Light {
-            return field.index();
-        }
-        field.index_if_made()?.map_or_else(StarField::catalogue, Ok)
+        let shown = self.shows_stars() && self.view == View::Light;
+        if shown || field.index_if_made().is_some() { field } else { StarField::Catalogue }
     }
 
     /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:

@@ -3,6 +3,7 @@
 //! while anybody holds it.
 
 use super::catalogue;
+use super::growing_index::GrowingIndex;
 use super::index::StarIndex;
 use super::procedural;
 use crate::allocate;
@@ -27,49 +28,81 @@ const ROOM: usize = 300 << 20;
 /// Large indices that somebody may still hold.
 static MADE: Mutex<Vec<(StarField, Weak<StarIndex>)>> = Mutex::new(Vec::new());
 
+/// The catalogue's, for good.
+static CATALOGUE: Mutex<Option<Arc<StarIndex>>> = Mutex::new(None);
+
 impl StarField {
     /// The field's index. The catalogue's takes milliseconds and stays; others take about a second unless somebody
     /// holds them. Errors: OUT_OF_MEMORY.
     pub fn index(self) -> Result<Arc<StarIndex>> {
-        if self == Self::Catalogue {
-            return Self::catalogue();
-        }
         // The lock is held while the index is made: a thread that asks for the same one meanwhile is to wait for it.
-        let mut made = MADE.lock();
-        if let Some(index) = find(&made, self) {
-            return Ok(index);
+        match self {
+            Self::Catalogue => Self::kept(&mut CATALOGUE.lock(), || self.make()),
+            _ => self.shared(&mut MADE.lock(), || self.make()),
         }
-        made.retain(|(_, index)| index.strong_count() > 0);
-        allocate::check_room(ROOM, "making a sky of random stars")?;
-        let index = Arc::new(self.make()?);
-        made.push((self, Arc::downgrade(&index)));
-        Ok(index)
     }
 
-    fn make(self) -> Result<StarIndex> {
+    /// The index while it is made, for those who do so in parts. Errors: OUT_OF_MEMORY.
+    pub fn growing(self) -> Result<GrowingIndex> {
+        if self != Self::Catalogue {
+            allocate::check_room(ROOM, "making a sky of random stars")?;
+        }
         match self {
-            Self::Catalogue => StarIndex::new(catalogue::stars()),
-            Self::Procedural(seed) => StarIndex::new(procedural::stars(seed)?),
+            Self::Catalogue => GrowingIndex::new(catalogue::stars()),
+            Self::Procedural(seed) => GrowingIndex::new(procedural::stars(seed)?),
             Self::Continued(seed) => {
                 let fainter = procedural::stars(seed)?.filter(|star| star.magnitude > catalogue::FAINTEST);
-                StarIndex::new(catalogue::stars().chain(fainter))
+                GrowingIndex::new(catalogue::stars().chain(fainter))
             }
         }
     }
 
-    /// The field's index if it is there already; the catalogue's always is. Errors: OUT_OF_MEMORY.
-    pub fn index_if_made(self) -> Result<Option<Arc<StarIndex>>> {
-        if self == Self::Catalogue { Self::catalogue().map(Some) } else { Ok(find(&MADE.lock(), self)) }
+    fn make(self) -> Result<StarIndex> {
+        self.growing()?.grown()
+    }
+
+    /// Shares an index that was made in parts; if another one was made meanwhile, that one.
+    pub fn share(self, index: StarIndex) -> Result<Arc<StarIndex>> {
+        match self {
+            Self::Catalogue => Self::kept(&mut CATALOGUE.lock(), || Ok(index)),
+            _ => self.shared(&mut MADE.lock(), || Ok(index)),
+        }
+    }
+
+    /// The catalogue's index, which `make` makes if it is not there. Errors: those of `make`.
+    fn kept(kept: &mut Option<Arc<StarIndex>>, make: impl FnOnce() -> Result<StarIndex>) -> Result<Arc<StarIndex>> {
+        match kept {
+            Some(index) => Ok(index.clone()),
+            None => Ok(kept.insert(Arc::new(make()?)).clone()),
+        }
+    }
+
+    /// Another field's. Errors: as there.
+    fn shared(
+        self,
+        made: &mut Vec<(Self, Weak<StarIndex>)>,
+        make: impl FnOnce() -> Result<StarIndex>,
+    ) -> Result<Arc<StarIndex>> {
+        if let Some(index) = find(made, self) {
+            return Ok(index);
+        }
+        made.retain(|(_, index)| index.strong_count() > 0);
+        let index = Arc::new(make()?);
+        made.push((self, Arc::downgrade(&index)));
+        Ok(index)
+    }
+
+    /// The field's index if it is there already.
+    pub fn index_if_made(self) -> Option<Arc<StarIndex>> {
+        match self {
+            Self::Catalogue => CATALOGUE.lock().clone(),
+            _ => find(&MADE.lock(), self),
+        }
     }
 
     /// Errors: OUT_OF_MEMORY.
     pub fn catalogue() -> Result<Arc<StarIndex>> {
-        static SHARED: Mutex<Option<Arc<StarIndex>>> = Mutex::new(None);
-        let mut shared = SHARED.lock();
-        match &*shared {
-            Some(index) => Ok(index.clone()),
-            None => Ok(shared.insert(Arc::new(Self::Catalogue.make()?)).clone()),
-        }
+        Self::Catalogue.index()
     }
 }
 
@@ -84,7 +117,7 @@ mod tests {
     #[test]
     fn an_index_is_shared_while_it_is_held_and_then_freed() {
         let field = StarField::Procedural(0x5eed);
-        let if_made = || field.index_if_made().expect("no catalogue is asked for");
+        let if_made = || field.index_if_made();
         assert!(if_made().is_none());
         let started = std::time::Instant::now();
         let first = field.index().expect("an index");

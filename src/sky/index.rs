@@ -4,12 +4,10 @@
 //! `shaders/sky/stars.wgsl` has `cell_of` and `level_for` too.
 
 use super::catalogue::Star;
-use super::galaxy::{GALACTIC_POLE, crowded_density, crowding};
+use super::galaxy::{GALACTIC_POLE, crowded_density};
 use super::shift::{SHIFT_SIZE, ShiftTable};
-use crate::allocate::{collected, filled, with_room};
 use crate::emit::free_spot::TABLE_NODES;
 use crate::emit::hot_spot::HotSpot;
-use crate::error::Result;
 use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -34,7 +32,8 @@ pub const REFERENCE_SOLID_ANGLE: f64 =
 /// V of the faintest stars that the lists of each level hold. Beyond the last level there are none: wide pixels hold so
 /// many faint stars that their mean light stands for them. With the number of stars in the real sky no list is long:
 /// about 10 on average, with a million stars too.
-const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
+pub(super) const FAINTEST: [f64; STAR_LEVELS as usize + 1] =
+    [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
 
 /// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for
 /// `PROFILE_SIZE` entries of the disk's and for the places of hot spots in free fall, the shifts of maps, the mean
@@ -71,17 +70,17 @@ pub fn level_for(radius: f64) -> Option<u32> {
 }
 
 /// Cells of the levels finer than this one: 6 side^2 each, summed.
-fn cells_before(level: u32) -> u32 {
+pub(super) fn cells_before(level: u32) -> u32 {
     8 * (STAR_FINEST * STAR_FINEST - side(level) * side(level))
 }
 
 /// Cells of all levels.
-const CELL_COUNT: usize = {
+pub(super) const CELL_COUNT: usize = {
     let last = STAR_FINEST >> STAR_LEVELS;
     (8 * (STAR_FINEST * STAR_FINEST - last * last)) as usize
 };
 
-fn warp(u: f64) -> f64 {
+pub(super) fn warp(u: f64) -> f64 {
     u * (1.0 + STAR_WARP - STAR_WARP * u.abs())
 }
 
@@ -146,29 +145,6 @@ impl std::fmt::Debug for StarIndex {
 }
 
 impl StarIndex {
-    /// The index of any stars. Errors: OUT_OF_MEMORY.
-    pub fn new(stars: impl Iterator<Item = Star>) -> Result<Self> {
-        let mut stars = collected(stars, STARS)?;
-        // Neighbours in the sky become neighbours in memory.
-        sort_by_cell(&mut stars)?;
-        let table = BlackbodyTable::shared();
-        let packed = stars.iter().flat_map(|star| {
-            let (d, temperature) = (star.direction, star.temperature());
-            let (flux, log_reference) = (scaled_flux(star), table.ln_luminance(temperature));
-            [[d.x, d.y, d.z, flux], [temperature, log_reference, 0.0, 0.0]]
-        });
-        let mut flat = with_room(2 * stars.len(), STARS)?;
-        flat.extend(packed.map(|v| v.map(|x| x as f32)));
-        let (star_cells, star_lists) = list_cells(&stars)?;
-        Ok(Self {
-            stars: flat,
-            star_cells,
-            star_lists,
-            mean_sky: mean_skies(&stars),
-            crowding: crowding(&stars) as f32,
-        })
-    }
-
     /// `light_tables` of the GPU, at the offsets above: blackbodies; the mean skies' tables; room for the disk's
     /// profile and the places of hot spots; the shifts of maps; of each level the temperatures that its table and the
     /// next one are looked up at (0: no light), the next one's flux limit, and the crowding; of every star flux,
@@ -243,82 +219,8 @@ impl MeanSky {
 }
 
 /// Radiance x solid angle: `Star::flux` on the display scale.
-fn scaled_flux(star: &Star) -> f64 {
+pub(super) fn scaled_flux(star: &Star) -> f64 {
     star.flux() * STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE
-}
-
-/// Calls `visit` with every cell whose list the star belongs to: on each level that is not too coarse for it, on each
-/// cube side whose plane it is near enough to, the two columns by two rows whose enlarged cells hold it.
-fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
-    let d = star.direction.to_array();
-    for face in 0..6_u32 {
-        let axis = (face / 2) as usize;
-        let along = if face % 2 == 0 { d[axis] } else { -d[axis] };
-        let (u, v) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
-        // Enlarged cells reach 1 + 1 / side in w; on the coarsest level that is below 1.25 in u.
-        if along <= 0.0 || u.abs() > 1.25 * along || v.abs() > 1.25 * along {
-            continue;
-        }
-        let (u, v) = (warp(u / along), warp(v / along));
-        for level in (0..STAR_LEVELS).filter(|&level| star.magnitude <= FAINTEST[level as usize]) {
-            let n = side(level) as i32;
-            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 64 moves every level's cells above
-            // 0.
-            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 63.5) as i32 - 64;
-            let (column, row) = (first(u), first(v));
-            for row in (row..=row + 1).filter(|row| (0..n).contains(row)) {
-                for column in (column..=column + 1).filter(|column| (0..n).contains(column)) {
-                    visit(cells_before(level) as usize + ((face as i32 * n + row) * n + column) as usize);
-                }
-            }
-        }
-    }
-}
-
-/// The name of this memory in out-of-memory errors.
-const STARS: &str = "the index of a sky's stars";
-
-/// A stable sort, in place but for the keys; `sort_by_cached_key` cannot be refused memory.
-fn sort_by_cell(stars: &mut [Star]) -> Result<()> {
-    let keys = stars.iter().zip(0_u32..).map(|(star, number)| (cell_of(star.direction, 0), number));
-    let mut order = collected(keys, STARS)?;
-    order.sort_unstable();
-    for place in 0..stars.len() {
-        // The star that belongs here may have been swapped away, to where the star of its own place went.
-        let mut from = order[place].1 as usize;
-        while from < place {
-            from = order[from].1 as usize;
-        }
-        order[place].1 = from as u32;
-        stars.swap(place, from);
-    }
-    Ok(())
-}
-
-/// `StarIndex::star_cells` and `star_lists`: a counting sort of the stars by cell.
-fn list_cells(stars: &[Star]) -> Result<(Vec<u32>, Vec<[f32; 4]>)> {
-    let mut counts = filled(CELL_COUNT, 0_u32, STARS)?;
-    for star in stars {
-        visit_cells(star, &mut |cell| counts[cell] += 1);
-    }
-    let mut end = 0;
-    // Where the next star of each list goes.
-    let begin_and_skip = |count: &u32| {
-        end += count;
-        end - count
-    };
-    let mut places = collected(counts.iter().map(begin_and_skip), STARS)?;
-    // A length has 8 bits; lists are not that long.
-    let cells = collected(places.iter().zip(&counts).map(|(begin, &count)| begin << 8 | count.min(255)), STARS)?;
-    let mut lists = filled(end as usize, [0.0; 4], STARS)?;
-    for (number, star) in stars.iter().enumerate() {
-        let d = star.direction.as_vec3();
-        visit_cells(star, &mut |cell| {
-            lists[places[cell] as usize] = [d.x, d.y, d.z, number as f32];
-            places[cell] += 1;
-        });
-    }
-    Ok((cells, lists))
 }
 
 /// Light and light / temperature of stars, by temperature.
@@ -326,7 +228,7 @@ type MeanSkySums = [(f64, f64); MEAN_SKY_PARTS];
 
 /// `StarIndex::mean_sky`. A part's 1 / T is the mean of its stars', weighted by light: to first order the shifted
 /// spectra, whose exponents are in 1 / T, then sum to the part's.
-fn mean_skies(stars: &[Star]) -> Vec<MeanSky> {
+pub(super) fn mean_skies(stars: &[Star]) -> Vec<MeanSky> {
     // The sums of the stars that a level leaves out and the level before it does not.
     let mut sums = [MeanSkySums::default(); FAINTEST.len()];
     let mut flux_limits = [f32::INFINITY; FAINTEST.len()];

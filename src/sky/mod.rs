@@ -12,6 +12,7 @@ pub(crate) mod shift;
 pub(crate) mod filter;
 pub mod galaxy;
 pub mod index;
+mod growing_index;
 pub mod procedural;
 mod field;
 pub mod milky_way;

@@ -8,7 +8,7 @@ use super::text::scene_of;
 use crate::capi::scene_file::Moment;
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{Canvas, CanvasTexture, Device, FrameTarget, GpuTracer, next_task};
+use crate::gpu::{Canvas, CanvasTexture, Device, FrameTarget, GpuTracer, in_tasks};
 use crate::image::{ImageRef, Layout, Lut, PixelFormat};
 use crate::platform::Instant;
 use crate::scene::Scene;
@@ -23,8 +23,8 @@ use web_sys::{AbortSignal, HtmlCanvasElement};
 /// Steps under way at once: one is read while the next runs.
 const AHEAD: usize = 2;
 
-/// Texels of a map that are made in one of the page's tasks: some 15 ms of a processor's.
-const TEXELS_A_TASK: u32 = 1 << 16;
+/// Texels of a map that are made at a time: a few milliseconds of a processor's.
+const TEXELS: u32 = 1 << 14;
 
 enum Traces {
     Gpu(Box<GpuTracer>),
@@ -194,9 +194,7 @@ async fn sky_map(pixels: &[u8], [width, height]: [u32; 2]) -> Result<SkyMap> {
     let mut growing = GrowingMap::new([width, height])?;
     // A level is at least as wide as it is high.
     let columns = width.max(height).min(MAX_MAP_SIZE[0]);
-    while !growing.grow_from(&image, (TEXELS_A_TASK / columns.max(1)).max(1))? {
-        next_task().await;
-    }
+    in_tasks(|| growing.grow_from(&image, (TEXELS / columns.max(1)).max(1))).await?;
     Ok(growing.done())
 }
 
@@ -240,7 +238,7 @@ impl Tracer {
             Traces::Cpu(tracer) => tracer.render(&scene, &request, &mut sink, &mut |_| true)?,
             Traces::Gpu(tracer) => {
                 let _ready = tracer.make_ready(&scene, &request, false, &|| aborts.check()).await?;
-                let traced = in_tasks(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await;
+                let traced = step_by_step(tracer, &scene, &request, FrameTarget::Host, &mut sink, aborts).await;
                 // Nobody knows what the tables of lenses hold after a frame that failed.
                 traced.inspect_err(|_| tracer.forget())?
             }
@@ -261,7 +259,7 @@ impl Tracer {
         let Traces::Gpu(tracer) = &self.traces else {
             return Err(Error::unsupported("the CPU tracer paints no canvas: put its image there"));
         };
-        if tracer.edges_are_late(&scene, &request)? {
+        if tracer.edges_are_late(&scene, &request).await? {
             let mut first = scene.clone();
             first.quality.edges_later = true;
             self.paint_scene(&first, &request, &element, aborts).await?;
@@ -296,7 +294,7 @@ impl Tracer {
             traced.inspect_err(|_| tracer.forget())?
         } else {
             let target = FrameTarget::screen(canvas.kept(&device, size)?);
-            let traced = in_tasks(tracer, scene, request, target, &mut |_, _, _| Ok(()), aborts).await;
+            let traced = step_by_step(tracer, scene, request, target, &mut |_, _, _| Ok(()), aborts).await;
             let stats = traced.inspect_err(|_| tracer.forget())?;
             canvas.show_kept(&device)?;
             stats
@@ -331,7 +329,7 @@ async fn in_one_task(
 }
 
 /// Traces a frame by a few steps at a time, and ends before the next one where `aborts` says so.
-async fn in_tasks(
+async fn step_by_step(
     tracer: &mut GpuTracer,
     scene: &Scene,
     request: &FrameRequest,

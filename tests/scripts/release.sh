@@ -52,7 +52,18 @@ printf 'Package: libbhr0\nVersion: %s\nArchitecture: all\nMaintainer: a <a@local
 dpkg-deb --build "$1/tree" "$1/libbhr0_${version}_amd64.deb"
 rm -r "$1/tree"
 END
+    stand_in packaging/npm <<'END'
+[ "$1" != --check ] || exit 0
+case $1 in
+    --tree) mkdir -p "$2" && echo x >"$2/index.js" ;;
+    *) echo x >"$1/bhr-$version.tgz" ;;
+esac
+END
+    stand_in packaging/page <<'END'
+mkdir -p "$1" && cp "$BHR_WEB_TREE/index.js" "$1/index.html"
+END
     stand_in python/build-wheel <<'END'
+[ -f "$BHR_WEB_TREE/index.js" ] || exit
 platform=manylinux_2_28_x86_64
 [ "$1" != --platform ] || { platform=$2 && shift 2; }
 echo x >"$1/bhr-$version-py3-none-$platform.whl"
@@ -79,17 +90,18 @@ END
 [ "$BHR_NEW_BASELINE" = 1 ] && cmp "tests/abi/bhr-$version.h" include/bhr.h && echo x >"tests/abi/bhr-$version.abi"
 END
     commit stand-ins && PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" && cd -- "$made" &&
-        sha256sum -c SHA256SUMS && [ "$(wc -l <SHA256SUMS)" -eq 11 ] &&
+        sha256sum -c SHA256SUMS && [ "$(wc -l <SHA256SUMS)" -eq 13 ] &&
+        tar -tzf "bhr-$version-page.tar.gz" "bhr-$version-page/index.html" &&
         cmp -- "abi/bhr-$version.h" "$root/include/bhr.h" && grep "^left out: .*BHR_RELEASE_URL" "$scratch/said" ||
         return 1
     # With the place where it will be published there is no more to leave out; without a tool for a part, the rest is
     # made, unless the part was named.
     cd -- "$scratch/ready" && rm -r -- "$made" &&
         BHR_RELEASE_URL=file:///there/ PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
-        [ "$(wc -l <"$made/SHA256SUMS")" -eq 13 ] && ! grep "left out" "$scratch/said" &&
+        [ "$(wc -l <"$made/SHA256SUMS")" -eq 15 ] && ! grep "left out" "$scratch/said" &&
         grep -xF -e "--url=file:///there/bhr-$version-x86_64-windows.zip" "$scratch/said" && rm -r -- "$made" &&
         WITHOUT_MINGW="no MinGW" PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
-        grep -xF "left out: windows: no MinGW" "$scratch/said" && [ "$(wc -l <"$made/SHA256SUMS")" -eq 8 ] &&
+        grep -xF "left out: windows: no MinGW" "$scratch/said" && [ "$(wc -l <"$made/SHA256SUMS")" -eq 10 ] &&
         [ ! -e "$made/bhr-$version-x86_64-windows.zip" ] || return 1
     # A part that fails, or that makes what is of another version, is the end.
     rm -r -- "$made" && ! OTHER_VERSION=9.0 packaging/release "$made" deb sums &&

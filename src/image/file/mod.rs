@@ -10,6 +10,8 @@ mod loaded;
 mod colour;
 mod icc;
 #[cfg(feature = "exr")]
+mod deflate;
+#[cfg(feature = "exr")]
 mod ordered;
 #[cfg(feature = "exr")]
 mod layers;

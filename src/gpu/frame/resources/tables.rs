@@ -53,6 +53,19 @@ pub struct Tables {
     lost_uploads: u64,
 }
 
+/// A part of the tables beside the stars; a page brings up each in a task of its own.
+#[derive(Clone, Copy)]
+pub enum TablePart {
+    SkyMaps,
+    Streaks,
+    Filaments,
+    Others,
+}
+
+impl TablePart {
+    pub const ALL: [Self; 4] = [Self::SkyMaps, Self::Streaks, Self::Filaments, Self::Others];
+}
+
 /// The pictures that are kept when the stars change.
 type Pictures = (SkyMaps, StreakTexture, (FilamentTexture, BakedTextures), (OccluderTexture, LutTexture));
 
@@ -113,6 +126,13 @@ impl Tables {
         scene: &Scene,
         setup: &Setup,
     ) -> Result<&'a mut Self> {
+        let tables = Self::with_stars(tables, device, scene)?;
+        TablePart::ALL.into_iter().try_for_each(|part| tables.update(part, device, scene, setup))?;
+        Ok(tables)
+    }
+
+    /// The tables, with the scene's stars. Errors: as [`Self::prepare`].
+    pub fn with_stars<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
         let held = tables.take().filter(|held| held.lost_uploads == device.uploads.lost());
         if held.is_none() {
@@ -133,9 +153,7 @@ impl Tables {
                 Self::new(device, stars, (maps, streaks, structure, occluder))?
             }
         };
-        let tables = tables.insert(made);
-        tables.update(device, scene, setup)?;
-        Ok(tables)
+        Ok(tables.insert(made))
     }
 
     fn into_pictures(self) -> Pictures {
@@ -190,13 +208,19 @@ impl Tables {
         self.sky_maps.sizes()
     }
 
-    /// Brings the profile up to the scene's disk, and the maps up to its sky.
-    fn update(&mut self, device: &Device, scene: &Scene, setup: &Setup) -> Result<()> {
-        self.sky_maps.update(device, scene, setup.variants.shade.map_sampler)?;
-        self.streaks.update(device, scene)?;
-        if setup.clouds.is_some() {
-            self.filaments.make(device)?;
+    /// Brings a part up to the scene. Errors: as [`Self::prepare`].
+    pub fn update(&mut self, part: TablePart, device: &Device, scene: &Scene, setup: &Setup) -> Result<()> {
+        match part {
+            TablePart::SkyMaps => self.sky_maps.update(device, scene, setup.variants.shade.map_sampler),
+            TablePart::Streaks => self.streaks.update(device, scene),
+            TablePart::Filaments if setup.clouds.is_some() => self.filaments.make(device),
+            TablePart::Filaments => Ok(()),
+            TablePart::Others => self.update_others(device, scene, setup),
         }
+    }
+
+    /// The profile of the scene's disk, the places of its hot spots, and what a host may set anew in each frame.
+    fn update_others(&mut self, device: &Device, scene: &Scene, setup: &Setup) -> Result<()> {
         self.baked.update(device, &setup.structure)?;
         self.occluder.update(device, scene)?;
         self.lut.update(device, scene)?;
