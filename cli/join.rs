@@ -230,7 +230,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         };
         whole.put(&tile, &place, path)?;
     }
-    let effort = crate::effort(given);
+    let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
     joined.ok_or_else(|| Ending::usage("no tiles"))?.save(effort, out)?;
     say(&format!("{}: {} tiles", out.display(), tiles.len()));
     Ok(())

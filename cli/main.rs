@@ -18,7 +18,6 @@ mod film;
 mod render;
 mod join;
 
-use bhr::image::Effort;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use ending::Ending;
 use std::path::PathBuf;
@@ -190,13 +189,8 @@ fn man(given: &ArgMatches) -> Result<(), Ending> {
 }
 
 fn compression() -> Arg {
-    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 2")
+    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 1")
         .value_parser(value_parser!(i32).range(1..=9))
-}
-
-/// The level of `--compression`; without it, one that a GPU need not wait for long.
-pub(crate) fn effort(given: &ArgMatches) -> Effort {
-    Effort(given.get_one::<i32>("compression").copied().unwrap_or(2))
 }
 
 /// The most threads that write files.

@@ -9,7 +9,7 @@ use crate::order::Order;
 use crate::pictures::Pictures;
 use crate::progress::{Progress, say};
 use crate::signals::Signals;
-use bhr::image::Layout;
+use bhr::image::{Effort, Layout};
 use bhr::renderer::Renderer;
 use clap::ArgMatches;
 use std::path::PathBuf;
@@ -52,7 +52,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Ending> {
         None if dry => return dry_run(&order, &list, first, count, signals),
         None => {
             let encoders = given.get_one::<u32>("encoders").copied().unwrap_or(0) as usize;
-            let effort = crate::effort(given);
+            let effort = given.get_one::<i32>("compression").map_or_else(Effort::default, |level| Effort(*level));
             let failed = AtomicBool::new(false);
             let pictures = Pictures { order: &order, names: &names, again, effort, signals, failed };
             let more = open::more_renderers(given, list.len())?;

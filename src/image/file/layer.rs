@@ -38,15 +38,20 @@ pub struct Channels {
     pub space: ColourSpace,
 }
 
-/// The work that is done to make a file of layers small, 1 .. 9 (`deflate` says how): 1 and 2 store noise as it is,
-/// beyond 3 it is a level of zlib.
+/// The work that is done to make a file of layers small, 1 .. 9. To 3 only runs of one byte are found; beyond, it is a
+/// level of zlib, which takes several times as long to save a few percent.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort(pub i32);
 
+impl Effort {
+    /// The most with which only runs are found.
+    pub(super) const RUNS: i32 = 3;
+}
+
 impl Default for Effort {
-    /// Level 4 of zlib: the smallest files but for a few percent.
+    /// Runs only.
     fn default() -> Self {
-        Self(4)
+        Self(1)
     }
 }
 
