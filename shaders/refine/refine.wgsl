@@ -153,7 +153,7 @@ fn refine_sample(entry: u32, end: u32) {
     lane_light[lane] = weight * shade_record(id, record);
     workgroupBarrier();
     if entry < end && sample_index() == 0u {
-        if in_quarters() && is_ragged() {
+        if in_quarters() && needs_strips(id) {
             // A ragged pixel needs the samples of EDGE_CURVE, which are taken later.
             note_ragged(id);
         } else {
@@ -239,14 +239,21 @@ fn gathered(x: f32) -> f32 {
     return 0.5 * NARROWEST * (exp(x) - exp(-x));
 }
 
-// The strips of the pixel that go_to_pixel went to. (Loops keep the places few where compilers put all of level_at.)
-fn strips_of() -> Strips {
+// The change of the level to the next pixel right and down. (Loops keep the places few where compilers put all of
+// level_at.)
+fn change_of_level() -> vec2<f32> {
     var change = vec2<f32>(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
         let axis = select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), i >= 2u);
         let side = select(-1.0, 1.0, (i & 1u) == 1u);
         change += axis * (side * level_at(axis * (side * LEVEL_STEP)) / (2.0 * LEVEL_STEP));
     }
+    return change;
+}
+
+// The strips of the pixel that go_to_pixel went to.
+fn strips_of() -> Strips {
+    let change = change_of_level();
     let steepness = max(length(change), 1e-20);
     let normal = select(vec2<f32>(1.0, 0.0), change / steepness, steepness > 1e-20);
     // The level here, and one step of Newton's method from here, which nearly everywhere does.
@@ -489,8 +496,24 @@ fn even_change(order: u32, high: f32) -> f32 {
     return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
-// For the first of a pixel's 4 lanes: whether what the pixel shows cannot change evenly from sample to sample.
-fn is_ragged() -> bool {
+// For the first of the 4 lanes of the tile's pixel `id`: whether its quarters do not tell what it shows.
+fn needs_strips(id: vec2<u32>) -> bool {
+    let evenness = quarters_evenness();
+    if evenness != EVEN {
+        return evenness == RAGGED;
+    }
+    // The curve may run between samples that all lie on one side of it, and with it thin images.
+    go_to_pixel(pixel_place(id));
+    return abs(level_at(vec2<f32>(0.0))) < CURVE_REACH * length(change_of_level());
+}
+
+// For the first of a pixel's 4 lanes: how what it shows changes from sample to sample. Not evenly; evenly; evenly, and
+// nothing is seen of what lies behind.
+const RAGGED: u32 = 0u;
+const EVEN: u32 = 1u;
+const HIDDEN: u32 = 2u;
+
+fn quarters_evenness() -> u32 {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
     let opaque_u = opaque_u_at();
@@ -508,7 +531,7 @@ fn is_ragged() -> bool {
         }
         let span = high - low;
         // A crossing that some do not have goes through infinity, u = 0, on its way to them.
-        let partial = present < 4u && 2.0 * high >= far;
+        let partial = present < 4u && PARTIAL_REACH * high >= far;
         let steep = present == 4u && span > even_change(k, high) && high + span >= far && low - span <= near;
         ragged = ragged || (!hidden && present > 0u && (partial || steep));
         hidden = hidden || (present == 4u && low - span >= opaque_u.x && high + span <= opaque_u.y);
@@ -516,5 +539,5 @@ fn is_ragged() -> bool {
     for (var s = 1u; s < 4u; s += 1u) {
         ragged = ragged || (!hidden && lane_sky[lane + s].w != lane_sky[lane].w);
     }
-    return ragged;
+    return select(select(EVEN, HIDDEN, hidden), RAGGED, ragged);
 }

@@ -11,8 +11,8 @@ use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
-    beside_quarter, covered, curve_samples, quarter_place,
+    CURVE_REACH, CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH,
+    SEARCH_STEPS, Strips, beside_quarter, covered, curve_samples, quarter_place,
 };
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -68,7 +68,13 @@ impl<'a> Refiner<'a> {
     fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
         let records = places.map(|place| self.sample(place, EDGE_SAMPLES));
-        if self.are_ragged(&records, at) {
+        let is_even = match self.evenness(&records, at) {
+            Evenness::Ragged => false,
+            // The curve may run between samples that all lie on one side of it, and with it thin images.
+            Evenness::Even => LevelAbout::new(self.lens, &self.level, at).distance() >= CURVE_REACH,
+            Evenness::Hidden => true,
+        };
+        if !is_even {
             return None;
         }
         let samples = Samples { records: &records, beside: &beside_quarter };
@@ -146,8 +152,8 @@ impl<'a> Refiner<'a> {
         Some(record)
     }
 
-    /// Whether what the samples of the pixel about `at` show cannot change evenly from one to the next.
-    fn are_ragged(&self, records: &[Record; 4], [x, y]: [f64; 2]) -> bool {
+    /// How what the samples of the pixel about `at` show changes from one to the next.
+    fn evenness(&self, records: &[Record; 4], [x, y]: [f64; 2]) -> Evenness {
         let opaque_u = self.opaque_u.filter(|_| self.plane.recorder().is_whole(x, y));
         let of =
             |record: &Record, order: usize| record.crossings.iter().find(|c| c.order as usize == order).map(|c| c.u);
@@ -155,15 +161,25 @@ impl<'a> Refiner<'a> {
             let Some(disk_u) = self.disk_u else { break };
             let crossings = Crossings { u: records.each_ref().map(|record| of(record, order).unwrap_or(0.0)), disk_u };
             if crossings.are_ragged(order == 0) {
-                return true;
+                return Evenness::Ragged;
             }
             if opaque_u.is_some_and(|opaque_u| crossings.cover(opaque_u)) {
-                return false;
+                return Evenness::Hidden;
             }
         }
         let [first, rest @ ..] = records;
-        rest.iter().any(|other| other.fate != first.fate)
+        let differs = rest.iter().any(|other| other.fate != first.fate);
+        if differs { Evenness::Ragged } else { Evenness::Even }
     }
+}
+
+/// How what a pixel shows changes from one of its quarters to the next.
+enum Evenness {
+    /// Not evenly, so that more samples are needed.
+    Ragged,
+    Even,
+    /// Evenly, and nothing is seen of what lies behind.
+    Hidden,
 }
 
 /// The change of `Record::turned` as `derivative_of_direction`, if that spans more than half a turn; else 0.
@@ -212,10 +228,20 @@ impl<'a> LevelAbout<'a> {
         self.level.at(self.lens.observer.aberrate(look).0)
     }
 
+    /// The change of the level to the next pixel right and down.
+    fn change(&self) -> [f64; 2] {
+        [[LEVEL_STEP, 0.0], [0.0, LEVEL_STEP]].map(|[x, y]| (self.at([x, y]) - self.at([-x, -y])) / (2.0 * LEVEL_STEP))
+    }
+
+    /// How far the curve is from the pixel's centre, pixels, were the level even.
+    fn distance(&self) -> f64 {
+        let [right, down] = self.change();
+        self.at([0.0; 2]).abs() / right.hypot(down).max(f64::MIN_POSITIVE)
+    }
+
     /// The strips of the pixel for so many samples, and the change of the level in a pixel across the curve.
     pub(crate) fn strips(&self, samples: u32) -> (Strips, f64) {
-        let change = [[LEVEL_STEP, 0.0], [0.0, LEVEL_STEP]]
-            .map(|[x, y]| (self.at([x, y]) - self.at([-x, -y])) / (2.0 * LEVEL_STEP));
+        let change = self.change();
         let steepness = change[0].hypot(change[1]).max(f64::MIN_POSITIVE);
         let along = |part: f64| self.at(change.map(|c| c / steepness * part));
         let here = along(0.0);

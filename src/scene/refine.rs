@@ -89,6 +89,10 @@ pub(crate) const FADING_CHANGE: f64 = 0.1;
 pub(crate) const EVEN_CHANGE: f64 = 0.25;
 pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 
+/// Where some of a pixel's samples lack a crossing, the most that u is in the pixel over the most that it is in the
+/// samples. (Were u 0 where it is missing, it would be 2 in a corner.)
+pub(crate) const PARTIAL_REACH: f64 = 4.0;
+
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
 pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
     [outer / 1.5, inner * 1.15]
@@ -315,8 +319,9 @@ impl Crossings {
         let Some((low, high, all)) = self.range() else { return false };
         let span = high - low;
         if !all {
-            // A crossing that some do not have goes through infinity, u = 0, on its way to them.
-            return 2.0 * high >= far;
+            // A crossing that some do not have goes through infinity, u = 0, on its way to them, and as steeply on its
+            // way to the pixel's corners.
+            return PARTIAL_REACH * high >= far;
         }
         let even = (EVEN_CHANGE * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
         span > even && high + span >= far && low - span <= near

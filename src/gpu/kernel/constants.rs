@@ -165,6 +165,7 @@ fn all() -> Vec<(&'static str, String)> {
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
         LEAST_SLOPE: f32 = refine::LEAST_SLOPE;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
+        PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
 
         BLACKBODY_SIZE: u32 = blackbody::BLACKBODY_SIZE;
         MIN_TEMPERATURE: f32 = blackbody::MIN_TEMPERATURE;

@@ -162,7 +162,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("records/edges", "list_place note_edges note_ragged listed_pixels listed_pixel", LIST),
     ("refine/integrated", "on_crossing integrated_record azimuth_turned more_integrated next_integrated", REFINED),
     ("refine/kerr", "ray_record with_sky sample_turn next_crossing more_crossings rewind_crossings", REFINED),
-    ("refine/refine", "refine refine_sample", REFINED),
+    ("refine/refine", "refine refine_sample needs_strips", REFINED),
     ("refine/refine", "baked_factor", VOLUMES),
     ("refine/refine", "seen_crossing seen_sky go_to_cell corrected_place", REFINED),
     ("refine/refine", "cell_footprint change_of_sky change_of_turn has_escaped change_of_place", REFINED),

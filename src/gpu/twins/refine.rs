@@ -185,8 +185,8 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "is_ragged even_change",
-            "enter_samples(); lane = 0u; out_flag(is_ragged());",
+            "quarters_evenness even_change",
+            "enter_samples(); lane = 0u; out_flag(quarters_evenness() == RAGGED);",
             push_samples,
             |i, o| o.flag(samples(i).are_ragged(true)),
             SAME,
@@ -206,7 +206,7 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "strips_of level_at go_to_pixel",
+            "strips_of change_of_level level_at go_to_pixel",
             "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
              out1(strips.level); out1(strips.slope); out2(strips.normal);",
             |i| {

@@ -7,6 +7,8 @@ use super::layer::Effort;
 use simd_adler32::adler32;
 use zlib_rs::{DeflateConfig, ReturnCode};
 
+/// The most effort with which only runs are found.
+const RUNS_ALONE: i32 = 3;
 /// Bytes that share a block and its codes: their statistics change from row to row.
 const PIECE: usize = 1 << 16;
 /// The most bytes of a stored block (RFC 1951, 3.2.4).
@@ -37,7 +39,7 @@ impl Deflater {
     /// The stream of these bytes; `None` if it is not made.
     pub(super) fn stream(&mut self, bytes: &[u8]) -> Option<&[u8]> {
         let Self { effort: Effort(effort), bytes: stream, runs } = self;
-        if *effort > Effort::RUNS {
+        if *effort > RUNS_ALONE {
             stream.resize(zlib_rs::compress_bound(bytes.len()), 0);
             let (stream, done) = zlib_rs::compress_slice(stream, bytes, DeflateConfig::new((*effort).min(9)));
             return (done == ReturnCode::Ok).then_some(stream);

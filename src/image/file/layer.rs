@@ -43,11 +43,6 @@ pub struct Channels {
 #[derive(Clone, Copy, Debug)]
 pub struct Effort(pub i32);
 
-impl Effort {
-    /// The most with which only runs are found.
-    pub(super) const RUNS: i32 = 3;
-}
-
 impl Default for Effort {
     /// Runs only.
     fn default() -> Self {
