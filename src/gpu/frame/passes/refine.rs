@@ -7,18 +7,18 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::stage::{Stage, list_groups};
-use crate::gpu::kernel::variant::{FilmVariant, RecordSource, ShadeVariant, TraceVariant};
+use crate::gpu::kernel::variant::{FilmVariant, RecordMaker, RecordSource, ShadeVariant, TraceVariant};
 
-/// Pixels of a tile for each workgroup of a software driver where matter is summed (`list_groups`): edges run through
-/// 1 or 2 % of them, and a workgroup takes two or more at a time.
+/// Pixels of a tile for each workgroup of a software driver where rays take many steps (`list_groups`): edges run
+/// through 1 or 2 % of them, and a workgroup takes two or more at a time.
 const PIXELS_PER_GROUP: u32 = 512;
 
 /// The kernel over the list.
 pub struct RefineStage {
     stage: Stage,
     software: bool,
-    /// `PIXELS_PER_GROUP` where matter is summed along the rays.
-    summed: Option<u32>,
+    /// `PIXELS_PER_GROUP` where rays are traced, or matter is summed along them.
+    stepped: Option<u32>,
 }
 
 impl RefineStage {
@@ -32,13 +32,14 @@ impl RefineStage {
         software: bool,
     ) -> Result<Self> {
         let stage = kernels.get(KernelKey::refine((source, variant), shade, film))?.stage(device, shared)?;
-        Ok(Self { stage, software, summed: variant.matter.map(|_| PIXELS_PER_GROUP) })
+        let stepped = variant.matter.is_some() || source.maker == RecordMaker::Traced;
+        Ok(Self { stage, software, stepped: stepped.then_some(PIXELS_PER_GROUP) })
     }
 
     /// After the pixels of `tile` have been shaded; group 3 is set, and 2, if that is for the caller. `offset`: of the
     /// sample's `PassUniform`.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
-        let groups = list_groups(tile, self.software, self.summed);
+        let groups = list_groups(tile, self.software, self.stepped);
         // Both lists, and then the pixels of the disk's edges that turned out to need the critical curve's samples.
         self.stage.run(pass, Some(offset), [groups, 2]);
         self.stage.run(pass, Some(offset), [groups, 1]);
