@@ -189,7 +189,7 @@ fn man(given: &ArgMatches) -> Result<(), Ending> {
 }
 
 fn compression() -> Arg {
-    option("compression", "LEVEL", "Of .exr files, 1 fast .. 9 small; default 1")
+    option("compression", "LEVEL", "Of .exr files, 1 to 3 fast .. 9 small; default 1")
         .value_parser(value_parser!(i32).range(1..=9))
 }
 

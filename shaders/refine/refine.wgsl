@@ -154,7 +154,7 @@ fn refine_sample(entry: u32, end: u32) {
     workgroupBarrier();
     if entry < end && sample_index() == 0u {
         if in_quarters() && needs_strips(id) {
-            // A ragged pixel needs the samples of EDGE_CURVE, which are taken later.
+            // Such a pixel needs the samples of EDGE_CURVE, which are taken later.
             note_ragged(id);
         } else {
             take_light(id, mean_light());
@@ -496,23 +496,24 @@ fn even_change(order: u32, high: f32) -> f32 {
     return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
-// For the first of the 4 lanes of the tile's pixel `id`: whether its quarters do not tell what it shows.
+// For the first of the 4 lanes of the tile's pixel `id`: whether its quarters do not suffice.
 fn needs_strips(id: vec2<u32>) -> bool {
     let evenness = quarters_evenness();
     if evenness != EVEN {
         return evenness == RAGGED;
     }
-    // The curve may run between samples that all lie on one side of it, and with it thin images.
+    // The critical curve and thin images may cross the pixel with all samples on one side.
     go_to_pixel(pixel_place(id));
     return abs(level_at(vec2<f32>(0.0))) < CURVE_REACH * length(change_of_level());
 }
 
-// For the first of a pixel's 4 lanes: how what it shows changes from sample to sample. Not evenly; evenly; evenly, and
-// nothing is seen of what lies behind.
+// How evenly a pixel changes from one of its quarters to the next: so unevenly that more samples are needed.
 const RAGGED: u32 = 0u;
 const EVEN: u32 = 1u;
+// Evenly, and the disk hides all that lies behind it.
 const HIDDEN: u32 = 2u;
 
+// For the first of a pixel's 4 lanes.
 fn quarters_evenness() -> u32 {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;

@@ -64,13 +64,13 @@ impl<'a> Refiner<'a> {
         Some(smooth.unwrap_or_else(|| self.light_of_strips(shader, at)))
     }
 
-    /// `None`: what the samples show cannot change evenly from one to the next.
+    /// `None`: they do not suffice, being uneven or near the critical curve.
     fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
         let records = places.map(|place| self.sample(place, EDGE_SAMPLES));
         let is_even = match self.evenness(&records, at) {
             Evenness::Ragged => false,
-            // The curve may run between samples that all lie on one side of it, and with it thin images.
+            // The critical curve and thin images may cross the pixel with all samples on one side.
             Evenness::Even => LevelAbout::new(self.lens, &self.level, at).distance() >= CURVE_REACH,
             Evenness::Hidden => true,
         };
@@ -152,7 +152,7 @@ impl<'a> Refiner<'a> {
         Some(record)
     }
 
-    /// How what the samples of the pixel about `at` show changes from one to the next.
+    /// How evenly the samples of the pixel about `at` change from one to the next.
     fn evenness(&self, records: &[Record; 4], [x, y]: [f64; 2]) -> Evenness {
         let opaque_u = self.opaque_u.filter(|_| self.plane.recorder().is_whole(x, y));
         let of =
@@ -173,12 +173,12 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// How what a pixel shows changes from one of its quarters to the next.
+/// How evenly a pixel changes from one of its quarters to the next.
 enum Evenness {
-    /// Not evenly, so that more samples are needed.
+    /// So unevenly that more samples are needed.
     Ragged,
     Even,
-    /// Evenly, and nothing is seen of what lies behind.
+    /// Evenly, and the disk hides all that lies behind it.
     Hidden,
 }
 
@@ -233,7 +233,7 @@ impl<'a> LevelAbout<'a> {
         [[LEVEL_STEP, 0.0], [0.0, LEVEL_STEP]].map(|[x, y]| (self.at([x, y]) - self.at([-x, -y])) / (2.0 * LEVEL_STEP))
     }
 
-    /// How far the curve is from the pixel's centre, pixels, were the level even.
+    /// The curve's distance from the pixel's centre, pixels, if the level is linear.
     fn distance(&self) -> f64 {
         let [right, down] = self.change();
         self.at([0.0; 2]).abs() / right.hypot(down).max(f64::MIN_POSITIVE)

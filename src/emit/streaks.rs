@@ -138,7 +138,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The drawing that [`Streaks::shared`] waits for; `None`: it is complete. Errors: OUT_OF_MEMORY.
+    /// A new drawing; `None`: [`Streaks::shared`] has its picture already. Errors: OUT_OF_MEMORY.
     pub fn begun() -> Result<Option<Self>> {
         if SHARED.get().is_some() {
             return Ok(None);
@@ -208,7 +208,7 @@ impl Streaks {
         while let Some(drawing) = left {
             left = drawing.draw(STREAK_ROWS)?;
         }
-        SHARED.get().ok_or_else(|| Error::internal("the streaks are drawn, and are not there"))
+        SHARED.get().ok_or_else(|| Error::internal("the streaks are drawn but missing"))
     }
 
     fn new(drawn: &[f32]) -> Result<Self> {

@@ -133,8 +133,8 @@ async fn stars(scene: &Scene) -> Result<Arc<StarIndex>> {
     in_a_task(|| field.share(growing.done())).await
 }
 
-/// Does one part of a piece of work after the other, until `part` returns that all is done, and gives the page its
-/// thread in between. Errors: those of `part`.
+/// Does a piece of work part by part, until `part` returns true; after each `SLICE` the page has its thread. Errors:
+/// those of `part`.
 pub async fn in_tasks(mut part: impl FnMut() -> Result<bool>) -> Result<()> {
     loop {
         let begun = Instant::now();
@@ -147,8 +147,8 @@ pub async fn in_tasks(mut part: impl FnMut() -> Result<bool>) -> Result<()> {
     }
 }
 
-/// Does a part of a frame's work, and gives the page its thread if that took long. What is there already takes no time,
-/// and browsers put off a frame's next timer by 4 ms.
+/// Does a part of a frame's work, and gives the page its thread if that took long. After short work it goes on, because
+/// browsers put off each further timer by 4 ms.
 async fn in_a_task<T>(work: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let done = work();
@@ -207,13 +207,14 @@ pub struct Ready {
 /// Work of more than this ends a task of the page's.
 const LONG: Duration = Duration::from_millis(4);
 
-/// Parts of the same work share a task for so long.
+/// How long parts of one piece of work share a task.
 const SLICE: Duration = Duration::from_millis(12);
 
-/// A part, a few milliseconds of a processor's: rows of the Milky Way's finest level and of the disk's streaks, and
-/// stars that are counted or listed.
+/// Rows of the Milky Way's finest level that are one part, of a few milliseconds.
 const ROWS: u32 = 8;
+/// Rows of the disk's streaks that are one part.
 const STREAK_ROWS: usize = 16;
+/// Stars that are counted or listed in one part.
 const STARS: usize = 5000;
 
 impl Device {

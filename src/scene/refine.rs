@@ -89,8 +89,8 @@ pub(crate) const FADING_CHANGE: f64 = 0.1;
 pub(crate) const EVEN_CHANGE: f64 = 0.25;
 pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 
-/// Where some of a pixel's samples lack a crossing, the most that u is in the pixel over the most that it is in the
-/// samples. (Were u 0 where it is missing, it would be 2 in a corner.)
+/// Where some of a pixel's samples lack a crossing: the ratio of the pixel's largest u to the largest of the samples,
+/// at most. (With u = 0 where there is no crossing, it would be 2 in a corner.)
 pub(crate) const PARTIAL_REACH: f64 = 4.0;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.

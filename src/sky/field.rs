@@ -28,7 +28,7 @@ const ROOM: usize = 300 << 20;
 /// Large indices that somebody may still hold.
 static MADE: Mutex<Vec<(StarField, Weak<StarIndex>)>> = Mutex::new(Vec::new());
 
-/// The catalogue's, for good.
+/// The catalogue's index, which is kept.
 static CATALOGUE: Mutex<Option<Arc<StarIndex>>> = Mutex::new(None);
 
 impl StarField {
@@ -42,7 +42,7 @@ impl StarField {
         }
     }
 
-    /// The index while it is made, for those who do so in parts. Errors: OUT_OF_MEMORY.
+    /// The index, for those who make it in parts. Errors: OUT_OF_MEMORY.
     pub fn growing(self) -> Result<GrowingIndex> {
         if self != Self::Catalogue {
             allocate::check_room(ROOM, "making a sky of random stars")?;
@@ -61,7 +61,7 @@ impl StarField {
         self.growing()?.grown()
     }
 
-    /// Shares an index that was made in parts; if another one was made meanwhile, that one.
+    /// Shares an index that was made in parts, or another one that was made meanwhile. Errors: none of its own.
     pub fn share(self, index: StarIndex) -> Result<Arc<StarIndex>> {
         match self {
             Self::Catalogue => Self::kept(&mut CATALOGUE.lock(), || Ok(index)),
@@ -77,7 +77,7 @@ impl StarField {
         }
     }
 
-    /// Another field's. Errors: as there.
+    /// The index of random stars, which `make` makes if nobody holds it. Errors: those of `make`.
     fn shared(
         self,
         made: &mut Vec<(Self, Weak<StarIndex>)>,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How the star index is made: the stars are sorted, then counted cell by cell, then listed; a page does so a few stars
-//! at a time. `index.rs` says what is in it.
+//! How the star index is made: the stars are sorted, then counted cell by cell, then listed, in web pages a few at a
+//! time. `index.rs` says what the index holds. Knows no scenes.
 
 use super::catalogue::Star;
 use super::galaxy::crowding;
@@ -19,15 +19,15 @@ pub struct GrowingIndex {
     stars: Vec<Star>,
     /// The parts that are made so far.
     index: StarIndex,
-    /// For each cell, how many stars its list has, and once they are counted, where the next of its stars goes.
+    /// Each cell's number of stars; once all are counted, where the next of its stars goes.
     cells: Vec<u32>,
     is_counted: bool,
-    /// Stars that are done of those that are to be counted or listed.
+    /// How many stars are counted, and then, how many are listed.
     done: usize,
 }
 
 impl GrowingIndex {
-    /// The index of any stars, which are sorted so far. Errors: OUT_OF_MEMORY.
+    /// The index of any stars, which are only sorted yet. Errors: OUT_OF_MEMORY.
     pub fn new(stars: impl Iterator<Item = Star>) -> Result<Self> {
         let mut stars = collected(stars, STARS)?;
         // Neighbours in the sky become neighbours in memory.
@@ -96,8 +96,7 @@ fn packed(star: &Star) -> [[f32; 4]; 2] {
     [[d.x, d.y, d.z, flux], [temperature, log_reference, 0.0, 0.0]].map(|v| v.map(|x| x as f32))
 }
 
-/// Makes room for the lists of cells with so many stars, one after the other, and turns the numbers into where each
-/// begins.
+/// Makes room for the lists of the cells, one after the other, and turns their lengths into where each begins.
 fn begin_lists(index: &mut StarIndex, cells: &mut [u32]) -> Result<()> {
     index.star_cells = with_room(cells.len(), STARS)?;
     let mut end = 0;

@@ -23,7 +23,7 @@ use web_sys::{AbortSignal, HtmlCanvasElement};
 /// Steps under way at once: one is read while the next runs.
 const AHEAD: usize = 2;
 
-/// Texels of a map that are made at a time: a few milliseconds of a processor's.
+/// Texels of a map that are made at a time, in a few milliseconds.
 const TEXELS: u32 = 1 << 14;
 
 enum Traces {

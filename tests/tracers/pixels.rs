@@ -327,7 +327,7 @@ fn shown(renderer: &mut Renderer, size: [u32; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// While the camera pans by sixteenths of a pixel no pixel goes dark and comes back but where finer frames do, as
+/// While the camera pans by sixteenths of a pixel, no pixel goes dark and comes back unless it does in finer frames, as
 /// between two thin rings.
 fn pixels_change_evenly_while_the_camera_pans(tracer: &str, mut renderer: Lent) {
     let steps = if runs_all() { 64 } else { 24 };

@@ -65,11 +65,11 @@ pub fn pixel_groups(size: [u32; 2]) -> [u32; 2] {
 const LIST_GROUPS: u32 = 2048;
 const LIST_GROUPS_SOFTWARE: u32 = 16;
 
-/// The workgroups that go over a list of pixels of a tile. `stepped`: where rays are traced, or matter is summed along
-/// them, the pixels of the tile for each workgroup of a software driver.
+/// The workgroups that go over a list of pixels of a tile. `stepped`: where rays are integrated step by step, or matter
+/// is summed along them, the pixels of the tile for each workgroup of a software driver.
 ///
-/// Mesa's lavapipe leaves every loop of a thread once all of them together have taken 65535 turns
-/// (LP_MAX_TGSI_LOOP_ITERATIONS of its lp_limits.h); a traced ray beside the shadow takes hundreds, and one through
+/// Mesa's lavapipe leaves every loop of a thread once all of them together have run 65535 times
+/// (LP_MAX_TGSI_LOOP_ITERATIONS); an integrated ray beside the shadow takes hundreds of iterations, and one through
 /// matter thousands. With 16 workgroups the pixels at a list's end came out black.
 pub fn list_groups(tile: [u32; 2], software: bool, stepped: Option<u32>) -> u32 {
     match (software, stepped) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! zlib streams (RFC 1950, RFC 1951). With little effort only runs of one byte are looked for, and all else is Huffman
-//! coded: the differences of a picture's samples hardly repeat in any other way, so that streams are a few percent
-//! longer than zlib's, and made several times as fast. Knows no images.
+//! zlib streams (RFC 1950, RFC 1951): those of zlib-rs, or, with little effort, runs of equal bytes and Huffman codes
+//! alone. The differences of a picture's samples hardly repeat in any other way, so that such streams are a few percent
+//! longer, and made several times as fast. Knows no images.
 
 use super::layer::Effort;
 use simd_adler32::adler32;
@@ -9,19 +9,18 @@ use zlib_rs::{DeflateConfig, ReturnCode};
 
 /// The most effort with which only runs are found.
 const RUNS_ALONE: i32 = 3;
-/// Bytes that share a block and its codes: their statistics change from row to row.
-const PIECE: usize = 1 << 16;
-/// The most bytes of a stored block (RFC 1951, 3.2.4).
-const MOST_STORED: usize = 65535;
+/// The bytes of a block, which has codes of its own, because statistics change from row to row: the most that a stored
+/// block may have (RFC 1951, 3.2.4).
+const PIECE: usize = 65535;
 /// Literals, the end of a block, and lengths.
 const SYMBOLS: usize = 286;
 const END: usize = 256;
 const LONGEST_CODE: u32 = 15;
 /// The longest repeat.
 const LONGEST_MATCH: usize = 258;
-/// A block's header, bits: its kind, the numbers of codes, the lengths of 19 and of 287 of these.
+/// Bits of a block's header: its kind, how many codes it has, 19 lengths of 3 bits and 287 of 4.
 const HEADER_BITS: u64 = 3 + 14 + 3 * 19 + 4 * (SYMBOLS as u64 + 1);
-/// Bytes that are written at once, past the last one that counts.
+/// Bytes that each flush writes, though not all of them count.
 const ROOM: usize = 8;
 
 /// Makes one stream after the other.
@@ -36,7 +35,7 @@ impl Deflater {
         Self { effort, bytes: Vec::new(), runs: Vec::new() }
     }
 
-    /// The stream of these bytes; `None` if it is not made.
+    /// The stream of these bytes; `None`: it was not made.
     pub(super) fn stream(&mut self, bytes: &[u8]) -> Option<&[u8]> {
         let Self { effort: Effort(effort), bytes: stream, runs } = self;
         if *effort > RUNS_ALONE {
@@ -44,10 +43,10 @@ impl Deflater {
             let (stream, done) = zlib_rs::compress_slice(stream, bytes, DeflateConfig::new((*effort).min(9)));
             return (done == ReturnCode::Ok).then_some(stream);
         }
-        // No piece takes more than its stored blocks.
-        stream.resize(bytes.len() + 8 * (bytes.len() / PIECE + 1) + 6 + ROOM, 0);
-        let mut bits = Bits { out: stream, at: 0, held: 0, count: 0 };
-        // A stream of a window of 2^15 bytes, made with the least effort.
+        // No piece takes more than a stored block: 5 bytes beside its own, and one that is begun.
+        stream.resize(bytes.len() + 6 * (bytes.len() / PIECE + 1) + 6 + ROOM, 0);
+        let mut bits = Bits { out: stream, at: 0, held: 0, count: 0, all_fits: true };
+        // A window of 2^15 bytes, the least effort (RFC 1950, 2.2).
         bits.bytes(&[0x78, 0x01]);
         let count = bytes.len().div_ceil(PIECE).max(1);
         for number in 1..=count {
@@ -57,8 +56,8 @@ impl Deflater {
         }
         bits.fill_byte();
         bits.bytes(&adler32(&bytes).to_be_bytes());
-        let end = bits.at;
-        stream.get(..end)
+        let (end, all_fits) = (bits.at, bits.all_fits);
+        stream.get(..end).filter(|_| all_fits)
     }
 }
 
@@ -70,7 +69,7 @@ struct Run {
 }
 
 impl Run {
-    /// The lengths of the repeats of its first byte: whole ones, and one more of at least 3 bytes or 0. Up to two bytes
+    /// The number of longest repeats of its first byte, and the length of one more: at least 3, or 0. Up to two bytes
     /// are left as literals.
     fn repeats(self) -> (usize, usize) {
         let repeated = self.end - self.begin - 1;
@@ -85,7 +84,7 @@ impl Run {
     }
 }
 
-/// Finds the runs of a piece that hold eight bytes from a multiple of eight on: all of at least 15 bytes.
+/// Finds the runs of a piece that fill eight bytes from a multiple of eight on, as all of 15 bytes or more do.
 fn find(piece: &[u8], runs: &mut Vec<Run>) {
     runs.clear();
     let (words, _) = piece.as_chunks::<8>();
@@ -160,14 +159,14 @@ fn code_lengths(counts: &[u32; SYMBOLS]) -> [u32; SYMBOLS] {
         if lengths.iter().all(|length| *length <= LONGEST_CODE) {
             return lengths;
         }
-        // Counts that differ less have codes that differ less; equal ones take 9 bits.
+        // Lengths differ less where counts do; for equal counts they are at most 9.
         scale += 1;
     }
 }
 
-/// [`code_lengths`] for the counts, over 2^`scale`, of any length.
+/// [`code_lengths`] of counts / 2^`scale`, without their limit.
 fn unlimited_code_lengths(counts: &[u32; SYMBOLS], scale: u32) -> [u32; SYMBOLS] {
-    // Leaves by their counts, then what two of them stand for, whose counts grow as well.
+    // Leaves by their counts, then the parents of two nodes each, whose counts ascend as well.
     let mut nodes = [(0_u32, 0_usize); 2 * SYMBOLS];
     let mut leaves = 0;
     for (symbol, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -201,7 +200,7 @@ fn unlimited_code_lengths(counts: &[u32; SYMBOLS], scale: u32) -> [u32; SYMBOLS]
     lengths
 }
 
-/// The codes of such lengths, as they are written, lowest bits first (RFC 1951, 3.2.2).
+/// The codes of these lengths, reversed: their highest bits are written first (RFC 1951, 3.1.1 and 3.2.2).
 fn codes(lengths: &[u32; SYMBOLS]) -> [Code; SYMBOLS] {
     let mut of_length = [0_u32; LONGEST_CODE as usize + 1];
     lengths.iter().filter(|length| **length > 0).for_each(|length| of_length[*length as usize] += 1);
@@ -236,7 +235,7 @@ fn put(piece: &[u8], runs: &[Run], last: bool, out: &mut Bits<'_>) {
     // A block with codes of its own: 286 for symbols, 1 for distances, 19 for the lengths of these.
     out.put(u64::from(last) | 2 << 1, 3);
     out.put(29 | 15 << 10, 14);
-    // Lengths from 0 to 15 have codes of 4 bits; how often one repeats is never said.
+    // Lengths from 0 to 15 have codes of 4 bits; the codes that repeat one are not used.
     out.put(0, 9);
     (0..16).for_each(|_| out.put(4, 3));
     for length in lengths.into_iter().chain([1]) {
@@ -247,7 +246,7 @@ fn put(piece: &[u8], runs: &[Run], last: bool, out: &mut Bits<'_>) {
     for run in runs {
         out.literals(&piece[at..=run.begin], &codes);
         let (whole, rest) = run.repeats();
-        // The bit of the distance, 1, is 0.
+        // The distance, which is always 1, has the code 0, of one bit.
         (0..whole).for_each(|_| out.put(codes[285].bits, codes[285].length + 1));
         if rest > 0 {
             let (symbol, extra, bits) = of_length(rest);
@@ -262,16 +261,12 @@ fn put(piece: &[u8], runs: &[Run], last: bool, out: &mut Bits<'_>) {
 
 /// Writes a piece as it is.
 fn store(piece: &[u8], last: bool, out: &mut Bits<'_>) {
-    let count = piece.len().div_ceil(MOST_STORED).max(1);
-    for number in 1..=count {
-        let block = &piece[(number - 1) * MOST_STORED..(number * MOST_STORED).min(piece.len())];
-        out.put(u64::from(last && number == count), 3);
-        out.fill_byte();
-        let length = block.len() as u16;
-        out.bytes(&length.to_le_bytes());
-        out.bytes(&(!length).to_le_bytes());
-        out.bytes(block);
-    }
+    out.put(u64::from(last), 3);
+    out.fill_byte();
+    let length = piece.len() as u16;
+    out.bytes(&length.to_le_bytes());
+    out.bytes(&(!length).to_le_bytes());
+    out.bytes(piece);
 }
 
 /// Bits that are written into bytes, lowest first.
@@ -279,13 +274,15 @@ struct Bits<'a> {
     out: &'a mut [u8],
     /// Where the next byte goes.
     at: usize,
-    /// Bits that are not written yet, less than eight between two calls.
+    /// Bits that are not written yet, at most seven between two calls.
     held: u64,
     count: u32,
+    /// False once there was no room.
+    all_fits: bool,
 }
 
 impl Bits<'_> {
-    /// At most 56 bits.
+    /// Appends up to 56 bits.
     #[inline]
     fn put(&mut self, bits: u64, count: u32) {
         self.held |= bits << self.count;
@@ -293,11 +290,12 @@ impl Bits<'_> {
         self.flush();
     }
 
-    /// Writes the whole bytes of what is held. Without room, which there is, they are lost.
+    /// Writes the whole bytes that are held.
     #[inline]
     fn flush(&mut self) {
-        if let Some(room) = self.out.get_mut(self.at..self.at + ROOM) {
-            room.copy_from_slice(&self.held.to_le_bytes());
+        match self.out.get_mut(self.at..self.at + ROOM) {
+            Some(room) => room.copy_from_slice(&self.held.to_le_bytes()),
+            None => self.all_fits = false,
         }
         self.at += (self.count >> 3) as usize;
         self.held >>= self.count & !7;
@@ -308,7 +306,7 @@ impl Bits<'_> {
     fn literals(&mut self, bytes: &[u8], codes: &[Code; SYMBOLS]) {
         let (threes, rest) = bytes.as_chunks::<3>();
         for three in threes {
-            // Three codes of up to 15 bits, with those that are held.
+            // Three codes of up to 15 bits fit beside those that are held.
             for byte in three {
                 let code = codes[usize::from(*byte)];
                 self.held |= code.bits << self.count;
@@ -322,16 +320,17 @@ impl Bits<'_> {
         }
     }
 
-    /// Fills the byte that is begun with zeros.
+    /// Fills up the byte that is begun, with zeros.
     fn fill_byte(&mut self) {
         self.count = self.count.next_multiple_of(8);
         self.flush();
     }
 
-    /// Bytes after a whole one.
+    /// Appends bytes where none is begun.
     fn bytes(&mut self, bytes: &[u8]) {
-        if let Some(room) = self.out.get_mut(self.at..self.at + bytes.len()) {
-            room.copy_from_slice(bytes);
+        match self.out.get_mut(self.at..self.at + bytes.len()) {
+            Some(room) => room.copy_from_slice(bytes),
+            None => self.all_fits = false,
         }
         self.at += bytes.len();
     }
@@ -354,11 +353,13 @@ mod tests {
         (0..count).map(|i| (mix(i.wrapping_add(mix(seed))) >> 24) as u8).collect()
     }
 
-    /// Bytes as they come in pictures, and those that meet the limits of the format: each with the most bytes that its
-    /// stream may have beside a tenth of a percent.
+    /// Bytes as they occur in pictures, and those that meet the limits of the format: each with the most bytes that its
+    /// stream may have, less a tenth of a percent.
     fn cases() -> Vec<(Vec<u8>, usize)> {
         let mut all = vec![(vec![], 11), (vec![7], 12), (vec![7, 7, 7], 14), (vec![9; 200], 180)];
-        all.push((noise(200_000, 1), 200_000 + 60));
+        for count in [65_535, 65_536, 131_070, 200_000, 1_100_000] {
+            all.push((noise(count, count), count as usize + 60));
+        }
         all.push((vec![128; 500_000], 3000));
         // Runs of every length about the limits, between noise.
         let runs = (1..600_u32).flat_map(|length| [noise(5, length), vec![length as u8; length as usize]].concat());
@@ -374,14 +375,14 @@ mod tests {
         }
         let most = fibonacci.len() / 2;
         all.push((fibonacci, most));
-        // Low and high bytes of a slope with noise.
+        // A slope with noise in its lowest bits.
         let slope = (0..70_000_u32).map(|i| (i / 700) as u8 ^ (noise(1, i)[0] & 3));
         all.push((slope.collect(), 70_000));
         all
     }
 
     #[test]
-    fn streams_are_those_of_zlib() {
+    fn zlib_reads_the_streams() {
         for effort in [1, 3, 4, 9] {
             let mut deflater = Deflater::new(Effort(effort));
             for (number, (bytes, most)) in cases().into_iter().enumerate() {

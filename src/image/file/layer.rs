@@ -38,8 +38,8 @@ pub struct Channels {
     pub space: ColourSpace,
 }
 
-/// The work that is done to make a file of layers small, 1 .. 9. To 3 only runs of one byte are found; beyond, it is a
-/// level of zlib, which takes several times as long to save a few percent.
+/// The work that is done to make a file of layers small, 1 .. 9. Up to 3 only runs of equal bytes are found; above, it
+/// is a level of zlib, which takes several times as long to save a few percent.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort(pub i32);
 

@@ -17,7 +17,7 @@ const PIXELS_PER_GROUP: u32 = 512;
 pub struct RefineStage {
     stage: Stage,
     software: bool,
-    /// `PIXELS_PER_GROUP` where rays are traced, or matter is summed along them.
+    /// `PIXELS_PER_GROUP` where rays are integrated step by step, or matter is summed along them.
     stepped: Option<u32>,
 }
 

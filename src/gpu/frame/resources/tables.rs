@@ -53,7 +53,7 @@ pub struct Tables {
     lost_uploads: u64,
 }
 
-/// A part of the tables beside the stars; a page brings up each in a task of its own.
+/// A part of the tables beside the stars; a page updates each in a task of its own.
 #[derive(Clone, Copy)]
 pub enum TablePart {
     SkyMaps,
@@ -208,7 +208,7 @@ impl Tables {
         self.sky_maps.sizes()
     }
 
-    /// Brings a part up to the scene. Errors: as [`Self::prepare`].
+    /// Updates a part for the scene. Errors: as [`Self::prepare`].
     pub fn update(&mut self, part: TablePart, device: &Device, scene: &Scene, setup: &Setup) -> Result<()> {
         match part {
             TablePart::SkyMaps => self.sky_maps.update(device, scene, setup.variants.shade.map_sampler),
