@@ -503,8 +503,14 @@ fn needs_strips(id: vec2<u32>) -> bool {
         return evenness == RAGGED;
     }
     // The critical curve and thin images may cross the pixel with all samples on one side.
-    go_to_pixel(pixel_place(id));
-    return abs(level_at(vec2<f32>(0.0))) < CURVE_REACH * length(change_of_level());
+    // The pixel's centre, which this lane's sample is beside.
+    go_to_pixel(pixel_place(id) - sample_shift);
+    return !(curve_distance() >= CURVE_REACH);
+}
+
+// The curve's distance from the centre of the pixel that go_to_pixel went to, pixels, if the level is linear.
+fn curve_distance() -> f32 {
+    return abs(level_at(vec2<f32>(0.0))) / max(length(change_of_level()), 1e-20);
 }
 
 // How evenly a pixel changes from one of its quarters to the next: so unevenly that more samples are needed.

@@ -71,7 +71,7 @@ impl<'a> Refiner<'a> {
         let is_even = match self.evenness(&records, at) {
             Evenness::Ragged => false,
             // The critical curve and thin images may cross the pixel with all samples on one side.
-            Evenness::Even => LevelAbout::new(self.lens, &self.level, at).distance() >= CURVE_REACH,
+            Evenness::Even => LevelAbout::new(self.lens, &self.level, at).curve_distance() >= CURVE_REACH,
             Evenness::Hidden => true,
         };
         if !is_even {
@@ -234,7 +234,7 @@ impl<'a> LevelAbout<'a> {
     }
 
     /// The curve's distance from the pixel's centre, pixels, if the level is linear.
-    fn distance(&self) -> f64 {
+    pub(crate) fn curve_distance(&self) -> f64 {
         let [right, down] = self.change();
         self.at([0.0; 2]).abs() / right.hypot(down).max(f64::MIN_POSITIVE)
     }

@@ -153,6 +153,9 @@ impl Drawing {
     /// Draws up to `rows` more rows, or, after the last one, finishes the picture. Returns what is left to do; `None`:
     /// it is complete. Errors: OUT_OF_MEMORY.
     pub fn draw(mut self, rows: usize) -> Result<Option<Self>> {
+        if SHARED.get().is_some() {
+            return Ok(None);
+        }
         let first = self.sums.len() / STREAK_COLUMNS;
         if first == STREAK_ROWS {
             let streaks = Streaks::new(&finished(self.sums))?;

@@ -16,6 +16,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::platform::Instant;
 use crate::scene::Scene;
+use crate::sky::StarField;
 use crate::sky::index::StarIndex;
 use crate::sky::milky_way::Drawing;
 use crate::sky::shift::ShiftTable;
@@ -113,7 +114,8 @@ async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
     in_a_task(BlackbodyTable::shared).await;
     in_a_task(ShiftTable::shared).await;
     let stars = stars(scene).await?;
-    let mut streaks = if setup.variants.shade.turbulent { streaks::Drawing::begun()? } else { None };
+    let shows_streaks = setup.variants.shade.turbulent;
+    let mut streaks = in_a_task(|| if shows_streaks { streaks::Drawing::begun() } else { Ok(None) }).await?;
     in_tasks(|| {
         streaks = streaks.take().map(|drawing| drawing.draw(STREAK_ROWS)).transpose()?.flatten();
         Ok(streaks.is_none())
@@ -124,7 +126,7 @@ async fn drawn(scene: &Scene, setup: &Setup) -> Result<Arc<StarIndex>> {
 
 /// [`Scene::stars`], made a few at a time.
 async fn stars(scene: &Scene) -> Result<Arc<StarIndex>> {
-    let field = scene.shown_field();
+    let field = scene.shown_field().unwrap_or(StarField::Catalogue);
     if scene.given_stars.is_some() || field.index_if_made().is_some() {
         return scene.stars();
     }

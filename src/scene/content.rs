@@ -230,17 +230,22 @@ impl Scene {
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
     /// `StarField::index`.
     pub fn stars(&self) -> Result<Arc<StarIndex>> {
-        match &self.given_stars {
-            Some(stars) => Ok(stars.clone()),
-            None => self.shown_field().index(),
+        if let Some(stars) = &self.given_stars {
+            return Ok(stars.clone());
+        }
+        match self.shown_field() {
+            Some(field) => field.index(),
+            None => self.field_of_sky().index_if_made().map_or_else(StarField::catalogue, Ok),
         }
     }
 
-    /// The field whose index [`Self::stars`] gives where the host gave no stars.
-    pub fn shown_field(&self) -> StarField {
-        let field = self.sky.star_field().unwrap_or(StarField::Catalogue);
-        let shown = self.shows_stars() && self.view == View::Light;
-        if shown || field.index_if_made().is_some() { field } else { StarField::Catalogue }
+    fn field_of_sky(&self) -> StarField {
+        self.sky.star_field().unwrap_or(StarField::Catalogue)
+    }
+
+    /// The field whose stars show; `None`: none do.
+    pub fn shown_field(&self) -> Option<StarField> {
+        (self.shows_stars() && self.view == View::Light).then(|| self.field_of_sky())
     }
 
     /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:

@@ -80,9 +80,13 @@ fn push_near_curve(i: &mut Inputs, view: &View) -> bool {
     seen
 }
 
-fn strips_of(i: &Inputs) -> (Strips, f64) {
+/// The strips of a pixel, the slope of its level, and the curve's distance.
+fn strips_of(i: &Inputs) -> (Strips, f64, f64) {
     let lens = &view(i).lens;
-    LevelAbout::new(lens, &CurveLevel::new(&lens.observer.frame), [i.x(1), i.x(2)]).strips(CURVE_SAMPLES)
+    let level = CurveLevel::new(&lens.observer.frame);
+    let level = LevelAbout::new(lens, &level, [i.x(1), i.x(2)]);
+    let (strips, slope) = level.strips(CURVE_SAMPLES);
+    (strips, slope, level.curve_distance())
 }
 
 pub fn group() -> Group {
@@ -206,9 +210,9 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "strips_of change_of_level level_at go_to_pixel",
+            "strips_of change_of_level curve_distance level_at go_to_pixel",
             "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
-             out1(strips.level); out1(strips.slope); out2(strips.normal);",
+             out1(strips.level); out1(strips.slope); out2(strips.normal); out1(curve_distance());",
             |i| {
                 loop {
                     i.clear();
@@ -219,10 +223,11 @@ pub fn group() -> Group {
                 }
             },
             |i, o| {
-                let (strips, slope) = strips_of(i);
+                let (strips, slope, distance) = strips_of(i);
                 o.near(strips.level, 1.0);
                 o.near(slope, 1e-6);
                 o.all(strips.normal, 1.0);
+                o.near(distance, 1.0);
             },
             5e-3,
         )
