@@ -153,7 +153,7 @@ fn refine_sample(entry: u32, end: u32) {
     lane_light[lane] = weight * shade_record(id, record);
     workgroupBarrier();
     if entry < end && sample_index() == 0u {
-        if in_quarters() && needs_strips(id) {
+        if in_quarters() && needs_strips() {
             // Such a pixel needs the samples of EDGE_CURVE, which are taken later.
             note_ragged(id);
         } else {
@@ -175,16 +175,25 @@ fn sample_index() -> u32 {
     return lane % samples;
 }
 
+// Whether the critical curve, and thin images with it, may cross this thread's pixel. The first lane of a pixel in
+// quarters knows it.
+var<private> near_curve: bool;
+
 // Goes to the place of this thread's sample in the tile's pixel `id`; the share of the pixel that it stands for.
 fn go_to_cell(id: vec2<u32>) -> f32 {
     sample_shift = vec2<f32>(0.0);
+    var about = vec3<f32>(0.0);
+    if !in_quarters() || sample_index() == 0u {
+        go_to_pixel(pixel_place(id));
+        about = level_about();
+        near_curve = !(curve_distance(about) >= CURVE_REACH);
+    }
     if in_quarters() {
         sample_shift = quarter_place() - 0.5;
         beside = beside_cell(true, true, 2u);
         return 0.25;
     }
-    go_to_pixel(pixel_place(id));
-    let strips = strips_of();
+    let strips = strips_of(about);
     let strip = sample_index() / 2u;
     let cell = strip_cell(strips);
     let outside = strip >= strips.captured;
@@ -239,53 +248,74 @@ fn gathered(x: f32) -> f32 {
     return 0.5 * NARROWEST * (exp(x) - exp(-x));
 }
 
-// The change of the level to the next pixel right and down. (Loops keep the places few where compilers put all of
-// level_at.)
-fn change_of_level() -> vec2<f32> {
+// The level at the centre of the pixel that go_to_pixel went to, and its change to the next pixel right and down.
+// (Loops keep the places few where compilers put all of level_at.)
+fn level_about() -> vec3<f32> {
+    var centre = 0.0;
     var change = vec2<f32>(0.0);
-    for (var i = 0u; i < 4u; i += 1u) {
-        let axis = select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), i >= 2u);
+    for (var i = 0u; i < 5u; i += 1u) {
+        let is_centre = i == 4u;
+        let axis = select(select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), i >= 2u), vec2<f32>(0.0), is_centre);
         let side = select(-1.0, 1.0, (i & 1u) == 1u);
-        change += axis * (side * level_at(axis * (side * LEVEL_STEP)) / (2.0 * LEVEL_STEP));
+        let level = level_at(axis * (side * LEVEL_STEP));
+        centre = level;
+        change += select(axis * (side * level / (2.0 * LEVEL_STEP)), vec2<f32>(0.0), is_centre);
     }
-    return change;
+    return vec3<f32>(centre, change);
 }
 
-// The strips of the pixel that go_to_pixel went to.
-fn strips_of() -> Strips {
-    let change = change_of_level();
+// The curve's distance from the centre of a pixel, pixels, if the level is linear; `about`: its level_about.
+fn curve_distance(about: vec3<f32>) -> f32 {
+    return abs(about.x) / max(length(about.yz), 1e-20);
+}
+
+// The strips of the pixel that go_to_pixel went to; `about`: its level_about.
+fn strips_of(about: vec3<f32>) -> Strips {
+    let here = about.x;
+    let change = about.yz;
     let steepness = max(length(change), 1e-20);
     let normal = select(vec2<f32>(1.0, 0.0), change / steepness, steepness > 1e-20);
-    // The level here, and one step of Newton's method from here, which nearly everywhere does.
-    var here = 0.0;
-    var rest = 0.0;
-    for (var i = 0u; i < 2u; i += 1u) {
-        rest = level_at(normal * (-here / steepness)) / steepness;
-        here = select(here, rest * steepness, i == 0u);
-        if abs(here) >= FARTHEST * steepness {
-            break;
-        }
-    }
     let step = -here / steepness;
-    if abs(step) >= FARTHEST || (abs(step) < SEARCH_REACH && abs(rest) <= EVEN_LEVEL) {
-        return strips_at(select(rest, 0.0, abs(step) >= FARTHEST) - step, normal, steepness);
-    }
-    // The level on both sides, then the Illinois method: places and levels on both sides of the curve.
+    var distance = -step;
+    var slope = steepness;
+    // Places and levels on both sides of the curve; which of them was found last.
     var low = vec2<f32>(0.0);
     var high = vec2<f32>(0.0);
     var found = 0.0;
     var side = 0.0;
-    for (var i = 1u; i < SEARCH_STEPS + 3u; i += 1u) {
+    var rise = 0.0;
+    // One step of Newton's method, which nearly everywhere does; the level on both sides, then the Illinois method; and
+    // the slope at what it found.
+    for (var i = 0u; i < SEARCH_STEPS + 5u; i += 1u) {
+        if abs(step) >= FARTHEST {
+            break;
+        }
         let met = (low.x * high.y - high.x * low.y) / max(high.y - low.y, 1e-20);
-        found = select(select(met, SEARCH_REACH, i == 2u), -SEARCH_REACH, i == 1u);
-        let value = level_at(normal * found);
+        let searching = i > 2u && i < SEARCH_STEPS + 3u;
+        let beyond = select(-1.0, 1.0, i == SEARCH_STEPS + 4u);
+        var place = select(found + beyond * LEVEL_STEP, met, searching);
+        place = select(select(select(place, SEARCH_REACH, i == 2u), -SEARCH_REACH, i == 1u), step, i == 0u);
+        let value = level_at(normal * place);
+        if i == 0u {
+            if abs(step) < SEARCH_REACH && abs(value) <= EVEN_LEVEL * steepness {
+                distance = value / steepness - step;
+                break;
+            }
+            continue;
+        }
+        if i > SEARCH_STEPS + 2u {
+            rise += beyond * value;
+            distance = -found;
+            slope = max(rise / (2.0 * LEVEL_STEP), 1e-20);
+            continue;
+        }
+        found = place;
         let outside = value > 0.0;
         // While the ends are looked at: `low` and `high` are they, and then one of them the centre.
-        let searching = i > 2u;
         low.y *= select(1.0, 0.5, searching && outside && side > 0.0);
         high.y *= select(1.0, 0.5, searching && !outside && side < 0.0);
-        high = select(high, vec2<f32>(found, value), i == 2u || (searching && outside));
-        low = select(low, vec2<f32>(found, value), i == 1u || (searching && !outside));
+        high = select(high, vec2<f32>(place, value), i == 2u || (searching && outside));
+        low = select(low, vec2<f32>(place, value), i == 1u || (searching && !outside));
         side = select(0.0, select(-1.0, 1.0, outside), searching);
         if i == 2u {
             if !(low.y < 0.0 && high.y > 0.0) {
@@ -295,15 +325,7 @@ fn strips_of() -> Strips {
             low = select(vec2<f32>(0.0, here), low, here > 0.0);
         }
     }
-    if side == 0.0 {
-        return strips_at(here / steepness, normal, steepness);
-    }
-    var rise = 0.0;
-    for (var i = 0u; i < 2u; i += 1u) {
-        let beyond = select(-1.0, 1.0, i == 1u);
-        rise += beyond * level_at(normal * (found + beyond * LEVEL_STEP));
-    }
-    return strips_at(-found, normal, max(rise / (2.0 * LEVEL_STEP), 1e-20));
+    return strips_at(distance, normal, slope);
 }
 
 fn strips_at(distance: f32, normal: vec2<f32>, slope: f32) -> Strips {
@@ -496,21 +518,14 @@ fn even_change(order: u32, high: f32) -> f32 {
     return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
-// For the first of the 4 lanes of the tile's pixel `id`: whether its quarters do not suffice.
-fn needs_strips(id: vec2<u32>) -> bool {
+// For the first of a pixel's 4 lanes: whether its quarters do not suffice.
+fn needs_strips() -> bool {
     let evenness = quarters_evenness();
     if evenness != EVEN {
         return evenness == RAGGED;
     }
     // The critical curve and thin images may cross the pixel with all samples on one side.
-    // The pixel's centre, which this lane's sample is beside.
-    go_to_pixel(pixel_place(id) - sample_shift);
-    return !(curve_distance() >= CURVE_REACH);
-}
-
-// The curve's distance from the centre of the pixel that go_to_pixel went to, pixels, if the level is linear.
-fn curve_distance() -> f32 {
-    return abs(level_at(vec2<f32>(0.0))) / max(length(change_of_level()), 1e-20);
+    return near_curve;
 }
 
 // How evenly a pixel changes from one of its quarters to the next: so unevenly that more samples are needed.

@@ -280,9 +280,9 @@ viewer_answer_times() {
 # viewer_median FILE: of its lines, an even number of numbers; the lower one of the middle two.
 viewer_median() { sort -n -- "$1" | sed -n "$(($(wc -l <"$1") / 2))p"; }
 
-# F12 of a soft disk, by a tracer that takes many seconds for it, while the mouse drags: a key is answered at most 100 ms
-# later than without the picture, half the times, as the machine has others to serve, who slow down this measurement as
-# well. A window that waits for its frames is late nearly every time.
+# F12 of a soft disk, by a tracer that takes many seconds for it, while the mouse drags: half of the keys are answered
+# at most 100 ms later than without the picture, as the machine may have others to serve, who slow down this
+# measurement as well. A window that waits for its frames is late nearly every time.
 viewer_answers() {
     local backend=$1 alone beside
     viewer_open --backend "$backend" --size 240x135 --scene "$root/examples-c/scenes/soft-disk.toml" || return 1

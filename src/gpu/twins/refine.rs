@@ -210,9 +210,10 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "strips_of change_of_level curve_distance level_at go_to_pixel",
-            "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
-             out1(strips.level); out1(strips.slope); out2(strips.normal); out1(curve_distance());",
+            "strips_of level_about curve_distance level_at go_to_pixel",
+            "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let about = level_about();
+             let strips = strips_of(about);
+             out1(strips.level); out1(strips.slope); out2(strips.normal); out1(curve_distance(about));",
             |i| {
                 loop {
                     i.clear();
