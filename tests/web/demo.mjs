@@ -28,7 +28,7 @@ const pages = [];
 /** A page of the demo. All that its console says has to be expected. */
 async function demo(options, hash = "") {
     const made = await opened(browser, address + hash, options);
-    made.page.setDefaultTimeout(60000);
+    made.page.setDefaultTimeout(180000);
     pages.push(made);
     return made.page;
 }
