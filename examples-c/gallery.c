@@ -24,7 +24,7 @@
 /* The scenes in the order of the contact sheet; what each is, its file says. */
 static const char *const EXHIBITS[] = {
     "cinematic", "physical", "observatory", "teaching", "gargantua", "tilt", "crescent", "plunge", "polar", "storm",
-    "schwarzschild-edge-on", "schwarzschild-face-on", "kerr-0.998", "translucent", "orion",
+    "anamorphic", "schwarzschild-edge-on", "schwarzschild-face-on", "kerr-0.998", "translucent", "orion",
     "einstein-ring", "galactic-centre", "grid", "fall-4", "fall-2.5", "fall-1.5",
     "inside-kerr-horizon", "inside-kerr-between", "inside-kerr-inner", "inside-kerr-dome",
     "inside-kerr-horizon-dome", "inside-kerr-inner-dome", "orbiting-observer",

@@ -17,7 +17,7 @@ fn potential_minimum(c: Constants) -> f32 {
     return min(2.0 * rise / max(b3 + root, 1e-30), 1.0 / c.r_plus);
 }
 
-// CurveLevel::within; `m`: of potential_minimum.
+// CurveLevel::within. `begin`: the ray's begin_local; `m`: its potential_minimum.
 fn curve_level_within(begin: RayBegin, m: f32) -> f32 {
     let c = begin.c;
     let u = begin.state.u;

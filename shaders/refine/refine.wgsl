@@ -175,8 +175,8 @@ fn sample_index() -> u32 {
     return lane % samples;
 }
 
-// Whether the critical curve, and thin images with it, may cross this thread's pixel. The first lane of a pixel in
-// quarters knows it.
+// Whether the critical curve, and thin images with it, may cross this thread's pixel. go_to_cell sets it, so that
+// level_about is called at one place only; in a pixel in quarters only for the first lane.
 var<private> near_curve: bool;
 
 // Goes to the place of this thread's sample in the tile's pixel `id`; the share of the pixel that it stands for.
@@ -249,7 +249,7 @@ fn gathered(x: f32) -> f32 {
 }
 
 // The level at the centre of the pixel that go_to_pixel went to, and its change to the next pixel right and down.
-// (Loops keep the places few where compilers put all of level_at.)
+// (Compilers inline level_at at every call: the loop keeps calls few.)
 fn level_about() -> vec3<f32> {
     var centre = 0.0;
     var change = vec2<f32>(0.0);
@@ -278,15 +278,18 @@ fn strips_of(about: vec3<f32>) -> Strips {
     let step = -here / steepness;
     var distance = -step;
     var slope = steepness;
-    // Places and levels on both sides of the curve; which of them was found last.
+    // Place and level on both sides of the curve; the place looked at last; -1 if that replaced `low`, 1 if `high`, and
+    // 0 before the search.
     var low = vec2<f32>(0.0);
     var high = vec2<f32>(0.0);
     var found = 0.0;
     var side = 0.0;
     var rise = 0.0;
-    // One step of Newton's method, which nearly everywhere does; the level on both sides, then the Illinois method; and
-    // the slope at what it found.
+    // Turn 0 is a step of Newton's method, which suffices nearly everywhere; turns 1 and 2 look at both ends; then
+    // SEARCH_STEPS turns search by the Illinois method, and the last two take the slope there. One loop, so that
+    // level_at is inlined once.
     for (var i = 0u; i < SEARCH_STEPS + 5u; i += 1u) {
+        // So far from the curve strips are even.
         if abs(step) >= FARTHEST {
             break;
         }

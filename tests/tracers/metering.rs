@@ -71,7 +71,7 @@ fn exposure_does_not_depend_on_the_light() {
 fn exposure_adapts_from_frame_to_frame() {
     for (tracer, mut renderer) in both() {
         renderer.scene.film.auto_exposure = AutoExposure { adaptation: 0.5, ..ON };
-        // The renderer may have metered for another test.
+        // The renderer may have metered for another test, and would adapt from that; another size begins anew.
         metered(&mut renderer, [64, 36]);
         let (_, at_once) = metered(&mut renderer, [192, 108]);
         renderer.scene.film.exposure_ev = 4.0;

@@ -66,7 +66,7 @@ export async function opened(browser, address, options = {}) {
     page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
     // Rejections that nobody handles are among them.
     page.on("pageerror", (error) => said.push(String(error)));
-    page.setDefaultTimeout(300000);
+    page.setDefaultTimeout(240000);
     await page.goto(address);
     return { page, said };
 }

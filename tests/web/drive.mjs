@@ -4,7 +4,8 @@
 //     node drive.mjs PACKAGE BHR SCRATCH
 //
 // PACKAGE: the folder that packaging/npm --tree makes; BHR: the program; SCRATCH: a folder for pictures. Prints a line
-// for each test, and "N passed, M failed". Environment: that of browser.mjs; SWIFTSHADER, the manifest of the driver.
+// for each test, and "N passed, M failed". Environment: that of browser.mjs; SWIFTSHADER, the manifest of the driver;
+// BHR_TESTS_ALL, 1 for every scene.
 
 import { execFile } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -67,7 +68,8 @@ const SCENES = {
     },
 };
 
-// Everyday the browser compiles all kernels, and runs those of some scenes; lavapipe runs the others.
+// Everyday the browser checks all kernels, but renders only some scenes, as SwiftShader is slow; tests of the library
+// render the others on lavapipe. BHR_TESTS_ALL=1: all of them.
 for (const name of process.env.BHR_TESTS_ALL === "1" ? [] : ["rays by RK4", "hot spot", "equirect"]) {
     delete SCENES[name];
 }

@@ -277,32 +277,38 @@ viewer_answer_times() {
     done
 }
 
-# viewer_median FILE: of its lines, an even number of numbers; the lower one of the middle two.
+# viewer_median FILE: the lower of the two middle numbers of a file of an even number of lines, one number each.
 viewer_median() { sort -n -- "$1" | sed -n "$(($(wc -l <"$1") / 2))p"; }
 
-# F12 of a soft disk, by a tracer that takes many seconds for it, while the mouse drags: half of the keys are answered
-# at most 100 ms later than without the picture, as the machine may have others to serve, who slow down this
-# measurement as well. A window that waits for its frames is late nearly every time.
+# F12 of a soft disk, by a tracer that takes many seconds for it, while the mouse drags. The median answer may come at
+# most 100 ms later than without the picture: other work on the machine slows both measurements down. A window that
+# waits for its frames is late nearly every time, with the picture and without it; so no more than 150 ms are taken for
+# the machine's.
 viewer_answers() {
-    local backend=$1 alone beside
+    local backend=$1 before after beside machine
     viewer_open --backend "$backend" --size 240x135 --scene "$root/examples-c/scenes/soft-disk.toml" || return 1
-    viewer_answer_times 20 >"$scratch/answers-alone" || return 1
+    viewer_answer_times 20 >"$scratch/answers-before" || return 1
     viewer_grab "$scratch/answers-1.png" && xdotool key F12 &&
-        viewer_until 120 viewer_title_says 'viewer-0001.png [0-9]* %' && xdotool mousedown 1 || return 1
-    viewer_answer_times 40 >"$scratch/answers-beside" || return 1
+        viewer_until 120 viewer_title_says 'viewer-0001.png [0-9]* %' &&
+        xdotool mousemove --window "$viewer_window" 100 60 mousedown 1 || return 1
+    viewer_answer_times 40 >"$scratch/answers-beside" || { xdotool mouseup 1; return 1; }
     xdotool mouseup 1 && viewer_title_says 'viewer-0001.png [0-9]* %' || {
         echo 'the picture was done before the measurement'
         return 1
     }
-    alone=$(viewer_median "$scratch/answers-alone")
-    beside=$(viewer_median "$scratch/answers-beside")
-    echo "answers without a picture, ms: $(paste -sd ' ' "$scratch/answers-alone"); half within $alone"
-    echo "answers beside the picture, ms: $(paste -sd ' ' "$scratch/answers-beside"); half within $beside"
-    [ "$beside" -le $((alone + 100)) ] || return 1
     viewer_until 600 viewer_says '^picture saved: viewer-0001.png, 240 x 135$' &&
         viewer_until 10 viewer_title_says 'saved viewer-0001.png' &&
         [ "$(identify -format '%wx%h' "$viewer_folder/viewer-0001.png")" = 240x135 ] &&
-        viewer_until 60 viewer_turned_since && viewer_close
+        viewer_until 60 viewer_turned_since &&
+        xdotool mousemove --window "$viewer_window" 100 60 || return 1
+    viewer_answer_times 20 >"$scratch/answers-after" || return 1
+    before=$(viewer_median "$scratch/answers-before")
+    beside=$(viewer_median "$scratch/answers-beside")
+    after=$(viewer_median "$scratch/answers-after")
+    machine=$((before > after ? before : after))
+    echo "median answers, ms: $before before the picture, $beside beside it, $after after it; beside it:"
+    paste -sd ' ' "$scratch/answers-beside"
+    [ "$beside" -le $((100 + (machine < 150 ? machine : 150))) ] && viewer_close
 }
 viewer_turned_since() {
     viewer_grab "$scratch/answers-2.png" && ! viewer_equal "$scratch/answers-1.png" "$scratch/answers-2.png"
