@@ -148,6 +148,14 @@ int end_output(int result) {
     return result;
 }
 
+void say_at_once(void) {
+#ifdef _WIN32
+    setvbuf(stdout, NULL, _IONBF, 0); /* lines are no unit of buffering there */
+#else
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
+#endif
+}
+
 uint32_t cores(void) {
 #ifdef _WIN32
     SYSTEM_INFO info;
@@ -166,7 +174,10 @@ uint32_t cores(void) {
 
 double wall_seconds(void) {
 #ifdef _WIN32
-    return (double)GetTickCount64() * 1e-3;
+    LARGE_INTEGER now, a_second; /* finer than a frame, as GetTickCount64 is not; neither fails */
+    QueryPerformanceCounter(&now);
+    QueryPerformanceFrequency(&a_second);
+    return (double)now.QuadPart / (double)a_second.QuadPart;
 #else
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

@@ -86,6 +86,6 @@ int main(int argc, char **argv) {
         std::fprintf(stderr, "%s: --size takes sides of 1 to 16384, or 0x0\n", argv[0]);
         return EXIT_USAGE;
     }
-    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ); // --verbose is read while the program runs
+    say_at_once();
     return show(backend, options);
 }

@@ -250,6 +250,7 @@ static int hold(Program *p, double seconds) {
 static int open_window(Program *p, const Settings *s) {
     const int place = SDL_WINDOWPOS_UNDEFINED;
     SDL_SetMainReady();
+    SDL_SetHint(SDL_HINT_WINDOWS_DPI_SCALING, "1"); /* else Windows stretches the picture on a dense display */
     if (SDL_Init(SDL_INIT_VIDEO) == 0 && s->size[0] <= INT32_MAX && s->size[1] <= INT32_MAX) {
         p->window = SDL_CreateWindow("bhr", place, place, (int)s->size[0], (int)s->size[1],
                                      SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
@@ -311,7 +312,7 @@ int main(int argc, char **argv) {
     if (result != 0) {
         return result;
     }
-    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what it says is read while it runs, from a file too */
+    say_at_once();
     if (s.help) {
         printf("Usage: sdl_window [options]\nA black hole in a window of SDL2. Drag: about the hole.\n\n");
         options_print(stdout, options, COUNT_OF(options));

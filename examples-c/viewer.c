@@ -564,6 +564,6 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what it says is read while it runs, from a file too */
+    say_at_once();
     return end_output(run(argc, argv));
 }

@@ -265,7 +265,7 @@ typedef int32_t BhrWindowKind;
 #define BHR_WINDOW_XLIB 1        /**< X11 through Xlib: display = Display *, id = Window. */
 #define BHR_WINDOW_XCB 2         /**< X11 through XCB: display = xcb_connection_t *, id = xcb_window_t. */
 #define BHR_WINDOW_WAYLAND 3     /**< Wayland: display = wl_display *, handle = wl_surface *. */
-#define BHR_WINDOW_WIN32 4       /**< Windows: handle = HWND, aux = HINSTANCE or NULL. */
+#define BHR_WINDOW_WIN32 4       /**< Windows: handle = HWND, aux = HINSTANCE; NULL: the window's own. */
 #define BHR_WINDOW_APPKIT 5      /**< macOS: handle = NSView *. */
 #define BHR_WINDOW_UIKIT 6       /**< iOS: handle = UIView *. */
 #define BHR_WINDOW_METAL_LAYER 7 /**< macOS, iOS: handle = CAMetalLayer *. */
@@ -1611,7 +1611,7 @@ typedef int32_t BhrPresentMode;
  * must outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put
  * there as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End
  * *out_surface with bhr_surface_destroy. docs/window.md.
- * Errors: INVALID_ARGUMENT for a window that does not exist (X11), or a side beyond 2^20; INVALID_STATE for a
+ * Errors: INVALID_ARGUMENT for a window that does not exist (X11, Windows), or a side beyond 2^20; INVALID_STATE for a
  * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform or build does
  * not have, where nothing can present, and for sides beyond the device's images (mostly 16384); DEVICE_LOST also
  * for images that do not fit into its memory. */

@@ -200,6 +200,9 @@ impl Inner {
             return Ok(ShowOutcome::Skipped);
         }
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
+        if window.is_gone() {
+            return Err(window_gone());
+        }
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
         if let Some(pacer) = self.presentation.as_mut().and_then(|presentation| presentation.pacer(mode))

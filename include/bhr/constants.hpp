@@ -52,7 +52,7 @@ enum class WindowKind : std::int32_t {
     xcb = BHR_WINDOW_XCB,
     /// Wayland: display = wl_display *, handle = wl_surface *.
     wayland = BHR_WINDOW_WAYLAND,
-    /// Windows: handle = HWND, aux = HINSTANCE or NULL.
+    /// Windows: handle = HWND, aux = HINSTANCE; NULL: the window's own.
     win32 = BHR_WINDOW_WIN32,
     /// MacOS: handle = NSView *.
     appkit = BHR_WINDOW_APPKIT,

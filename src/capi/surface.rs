@@ -72,7 +72,7 @@ unsafe fn on_surface(
 /// must outlive that. Where the context's adapter cannot present to the window, another one does, or frames are put
 /// there as memory; the log (info) says which. A host that holds XGrabServer must not call on surfaces. End
 /// *out_surface with bhr_surface_destroy. docs/window.md.
-/// Errors: INVALID_ARGUMENT for a window that does not exist (X11), or a side beyond 2^20; INVALID_STATE for a
+/// Errors: INVALID_ARGUMENT for a window that does not exist (X11, Windows), or a side beyond 2^20; INVALID_STATE for a
 /// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform or build does
 /// not have, where nothing can present, and for sides beyond the device's images (mostly 16384); DEVICE_LOST also
 /// for images that do not fit into its memory.

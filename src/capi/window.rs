@@ -20,7 +20,7 @@ pub const BHR_WINDOW_XLIB: BhrWindowKind = 1;
 pub const BHR_WINDOW_XCB: BhrWindowKind = 2;
 /// Wayland: display = wl_display *, handle = wl_surface *.
 pub const BHR_WINDOW_WAYLAND: BhrWindowKind = 3;
-/// Windows: handle = HWND, aux = HINSTANCE or NULL.
+/// Windows: handle = HWND, aux = HINSTANCE; NULL: the window's own.
 pub const BHR_WINDOW_WIN32: BhrWindowKind = 4;
 /// macOS: handle = NSView *.
 pub const BHR_WINDOW_APPKIT: BhrWindowKind = 5;

@@ -5,6 +5,7 @@
 use std::ffi::CStr;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io;
+use std::num::NonZeroIsize;
 use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
@@ -18,6 +19,18 @@ pub use std::time::Instant;
 /// Waits at most so long for what comes. Errors: it has not come, or never will.
 pub fn receive_within<T>(from: &Receiver<T>, time: Duration) -> Result<T, RecvTimeoutError> {
     from.recv_timeout(time)
+}
+
+// ---- windows ----
+
+/// Whether a window of Windows, by its HWND, is still there, as far as the system tells.
+pub fn window_exists(_window: NonZeroIsize) -> bool {
+    true
+}
+
+/// The program or DLL, by its HINSTANCE, that has made a window of Windows.
+pub fn program_of_window(_window: NonZeroIsize) -> Option<NonZeroIsize> {
+    None
 }
 
 // ---- the process ----

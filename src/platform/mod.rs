@@ -37,6 +37,7 @@ pub use here::{
     Instant, Uncancelled, around_thread_end, at_exit, block_file_size_signal, can_be_mapped, close_descriptor,
     close_file, copy_descriptor, descriptor_facts, folders_of_libraries, is_same_file, keep_mode, library_function,
     lower_priority, may_follow_link, never_wider, on_enough_stack, on_host_stack, open_without_waiting,
-    other_threads_are_gone, path_of_bytes, process_id, receive_within, stack_left, stay_mapped, sync_folder,
+    other_threads_are_gone, path_of_bytes, process_id, program_of_window, receive_within, stack_left, stay_mapped,
+    sync_folder, window_exists,
 };
 pub use system::{SYSTEM, System};

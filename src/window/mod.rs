@@ -15,7 +15,8 @@ pub(crate) mod memory;
 
 pub use native::{Handles, NativeWindow};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::platform;
 use free_desktop::{FramePacer, X11Window};
 
 /// How frames reach the screen.
@@ -50,6 +51,11 @@ impl Window {
     /// have, for all without the feature `window`.
     pub fn open(native: NativeWindow) -> Result<Self> {
         native.check_platform()?;
+        if let NativeWindow::Win32 { hwnd, .. } = native
+            && !platform::window_exists(hwnd)
+        {
+            return Err(Error::argument(format!("window handle is {hwnd:#x}; Windows has no such window")));
+        }
         Ok(Self { native, x11: X11Window::open(&native)? })
     }
 
@@ -60,7 +66,12 @@ impl Window {
 
     /// Whether it is still there, as far as this platform tells.
     pub fn exists(&self) -> bool {
-        self.x11.as_ref().is_none_or(|window| window.size().is_some())
+        !self.is_gone() && self.x11.as_ref().is_none_or(|window| window.size().is_some())
+    }
+
+    /// Whether it is known to be gone without asking a server: on Windows, whose drivers may go on taking frames.
+    pub fn is_gone(&self) -> bool {
+        matches!(self.native, NativeWindow::Win32 { hwnd, .. } if !platform::window_exists(hwnd))
     }
 
     /// Its size in pixels, where the platform knows it: X11.

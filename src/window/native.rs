@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A host's window by its platform's handles, and the raw-window-handle that stands for it. Looks behind no handle.
+//! A host's window by its platform's handles, and the raw-window-handle that stands for it. Looks behind no handle but
+//! that of Windows, which knows what is missing.
 
 use super::claim;
 use crate::error::{Error, Result};
-use crate::platform::{SYSTEM, System};
+use crate::platform::{self, SYSTEM, System};
 use raw_window_handle as rwh;
 use std::ffi::c_void;
 use std::num::{NonZeroIsize, NonZeroU32};
@@ -18,7 +19,7 @@ pub enum NativeWindow {
     Xcb { connection: NonNull<c_void>, window: NonZeroU32, visual: Option<NonZeroU32>, screen: i32 },
     /// `wl_display *`, `wl_surface *`.
     Wayland { display: NonNull<c_void>, surface: NonNull<c_void> },
-    /// `HWND`, `HINSTANCE`.
+    /// `HWND`, `HINSTANCE`; without the latter, that of whoever made the window.
     Win32 { hwnd: NonZeroIsize, hinstance: Option<NonZeroIsize> },
     /// `NSView *`.
     AppKit { view: NonNull<c_void> },
@@ -97,7 +98,8 @@ impl NativeWindow {
             ),
             Self::Win32 { hwnd, hinstance } => {
                 let mut handle = rwh::Win32WindowHandle::new(hwnd);
-                handle.hinstance = hinstance;
+                // Vulkan presents to no window without one.
+                handle.hinstance = hinstance.or_else(|| platform::program_of_window(hwnd));
                 Handles::Raw(rwh::WindowsDisplayHandle::new().into(), handle.into())
             }
             Self::AppKit { view } => {

@@ -8,6 +8,7 @@ mod late;
 pub use super::bare::*;
 
 use std::ffi::{CStr, OsString, c_char, c_void};
+use std::num::NonZeroIsize;
 use std::os::windows::ffi::OsStringExt;
 use std::path::PathBuf;
 use std::ptr::{NonNull, from_ref, null_mut};
@@ -22,6 +23,13 @@ unsafe extern "system" {
     fn GetProcAddress(module: *mut c_void, name: *const c_char) -> *mut c_void;
 }
 
+#[link(name = "user32")]
+unsafe extern "system" {
+    fn IsWindow(window: isize) -> i32;
+    #[cfg_attr(target_pointer_width = "32", link_name = "GetWindowLongW")]
+    fn GetWindowLongPtrW(window: isize, index: i32) -> isize;
+}
+
 #[link(name = "ntdll")]
 unsafe extern "system" {
     fn RtlDllShutdownInProgress() -> u8;
@@ -29,6 +37,9 @@ unsafe extern "system" {
 
 /// Characters of the longest path.
 const LONGEST_PATH: usize = 32_768;
+
+/// The number of a window's HINSTANCE among what it keeps.
+const GWLP_HINSTANCE: i32 = -6;
 
 const GET_MODULE_HANDLE_EX_FLAG_PIN: u32 = 1;
 const GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT: u32 = 2;
@@ -58,6 +69,16 @@ pub fn library_function(library: &CStr, function: &CStr) -> Result<NonNull<c_voi
 pub fn other_threads_are_gone() -> bool {
     // SAFETY: reads a state of the process.
     unsafe { RtlDllShutdownInProgress() != 0 }
+}
+
+pub fn window_exists(window: NonZeroIsize) -> bool {
+    // SAFETY: any number will do.
+    unsafe { IsWindow(window.get()) != 0 }
+}
+
+pub fn program_of_window(window: NonZeroIsize) -> Option<NonZeroIsize> {
+    // SAFETY: any number will do; that of no window gives 0.
+    NonZeroIsize::new(unsafe { GetWindowLongPtrW(window.get(), GWLP_HINSTANCE) })
 }
 
 static PINNED: AtomicBool = AtomicBool::new(false);
