@@ -6,14 +6,17 @@
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
 use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky, Volume, VolumeResolution};
-use criterion::Criterion;
 use glam::{DQuat, DVec3};
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-type Times = Rc<RefCell<BTreeMap<String, Vec<f64>>>>;
+/// Until a scene's caches, clocks and governors have settled.
+const WARM_UP: Duration = Duration::from_millis(500);
+/// Fast frames are measured for so long, and are then more than the least number.
+const MEASURED: Duration = Duration::from_secs(1);
+
+/// The seconds of every frame measured, by the scene's name.
+type Times = BTreeMap<String, Vec<f64>>;
 
 /// A renderer with its target.
 struct Stage {
@@ -90,40 +93,41 @@ impl Stage {
     }
 }
 
-/// Whether the command line asks for what `name` says. Criterion filters too, but only once a scene is set up, which
-/// takes as long as measuring it.
+/// Whether the command line asks for what `name` says: no word asks for everything.
 fn is_wanted(name: &str) -> bool {
-    // Options of Criterion's with a value would look like a word: then it filters by itself.
-    let arguments = std::env::args().skip(1).filter(|argument| argument != "--bench").collect::<Vec<_>>();
-    !matches!(&arguments[..], [word] if !word.starts_with('-') && !name.contains(word.as_str()))
+    let mut words = std::env::args().skip(1).filter(|word| !word.starts_with('-')).peekable();
+    words.peek().is_none() || words.any(|word| name.contains(&word))
 }
 
-fn measure(criterion: &mut Criterion, times: &Times, name: &str, stage: impl FnOnce() -> Stage) {
+/// At least so many frames of a scene, if the command line asks for it: a scene is not set up else, which takes as long
+/// as measuring it.
+fn measure(times: &mut Times, frames: usize, name: &str, stage: impl FnOnce() -> Stage) {
     if !is_wanted(name) {
         return;
     }
     let mut stage = stage();
-    // Pipelines, tables and caches.
-    for _ in 0..3 {
+    let begun = Instant::now();
+    // Pipelines and tables come with the first frames, whatever the time says.
+    let mut warm = 0;
+    while warm < 3 || begun.elapsed() < WARM_UP {
         stage.frame();
+        warm += 1;
     }
-    criterion.bench_function(name, |bencher| {
-        bencher.iter_custom(|iterations| {
-            let mut frame = || {
-                let took = stage.frame();
-                for (pass, seconds) in
-                    ["shading", "bloom", "development"].iter().zip(stage.passes().into_iter().flatten())
-                {
-                    times.borrow_mut().entry(format!("{name}: {pass}")).or_default().push(seconds);
-                }
-                took
-            };
-            let each = (0..iterations).map(|_| frame()).collect::<Vec<_>>();
-            let seconds = each.iter().map(Duration::as_secs_f64);
-            times.borrow_mut().entry(name.into()).or_default().extend(seconds);
-            each.iter().sum()
-        });
-    });
+    let (begun, mut seconds) = (Instant::now(), Vec::new());
+    while seconds.len() < frames || begun.elapsed() < MEASURED {
+        seconds.push(stage.frame().as_secs_f64());
+        for (pass, seconds) in ["shading", "bloom", "development"].iter().zip(stage.passes().into_iter().flatten()) {
+            times.entry(format!("{name}: {pass}")).or_default().push(seconds);
+        }
+    }
+    println!("{name}: {:.3} ms, {} frames", 1e3 * quantile(&mut seconds, 0.5), seconds.len());
+    times.entry(name.into()).or_default().extend(seconds);
+}
+
+/// Sorts the values.
+fn quantile(values: &mut [f64], share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
 fn spin(a: f64) -> impl FnOnce(&mut Renderer) {
@@ -195,12 +199,12 @@ fn volumes(measured: &mut dyn FnMut(&str, Set)) {
     }
 }
 
-fn gpu(criterion: &mut Criterion, times: &Times) {
+fn gpu(times: &mut Times, frames: usize) {
     let software = Stage::new(None, [16, 16], |_| ()).renderer.adapter().software;
     let size = if software { [1280, 720] } else { [3840, 2160] };
     let mut measured = |what: &str, size: [u32; 2], change: Change, set: Set| {
         let name = format!("gpu {}x{} {what}", size[0], size[1]);
-        measure(criterion, times, &name, || Stage::new(None, size, set).with(change));
+        measure(times, frames, &name, || Stage::new(None, size, set).with(change));
     };
     for a in [0.0, 0.9] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
@@ -261,47 +265,39 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
     }
 }
 
-fn cpu(criterion: &mut Criterion, times: &Times) {
+/// Frames of the CPU tracer are slow: a few will do.
+fn cpu(times: &mut Times) {
+    let frames = 10;
     volumes(&mut |name, set| {
-        measure(criterion, times, &format!("cpu 640x360 {name}"), || Stage::new(Some(Backend::Cpu), [640, 360], set));
+        measure(times, frames, &format!("cpu 640x360 {name}"), || Stage::new(Some(Backend::Cpu), [640, 360], set));
     });
     let size = [1280, 720];
     for a in [0.0, 0.9] {
         let name = format!("cpu 1280x720 plain scene, spin {a}");
-        measure(criterion, times, &name, || Stage::new(Some(Backend::Cpu), size, spin(a)));
+        measure(times, frames, &name, || Stage::new(Some(Backend::Cpu), size, spin(a)));
     }
     let far = |renderer: &mut Renderer| {
         let position = renderer.scene.camera.position * 10.0;
         renderer.scene.camera = Camera { position, forward: -position, ..Camera::plain() };
     };
-    measure(criterion, times, "cpu 1280x720 from 300 M, spin 0", || Stage::new(Some(Backend::Cpu), size, far));
+    measure(times, frames, "cpu 1280x720 from 300 M, spin 0", || Stage::new(Some(Backend::Cpu), size, far));
     for (name, flags) in [("nothing", 0), ("stars alone", Sky::STARS), ("Milky Way alone", Sky::MILKY_WAY)] {
         let sky = move |r: &mut Renderer| (r.scene.disk, r.scene.sky.flags) = (None, flags);
-        measure(criterion, times, &format!("cpu 1280x720 {name}, spin 0"), || {
-            Stage::new(Some(Backend::Cpu), size, sky)
-        });
+        measure(times, frames, &format!("cpu 1280x720 {name}, spin 0"), || Stage::new(Some(Backend::Cpu), size, sky));
     }
 }
 
 fn main() {
-    let times = Times::default();
     let adapter = Stage::new(None, [16, 16], |_| ()).renderer.adapter().clone();
     println!("GPU adapter: {}, driver {}", adapter.name, adapter.driver);
     // 100 frames a scene on hardware; software takes its time.
-    let samples = if adapter.software { 10 } else { 100 };
-    let mut criterion = Criterion::default()
-        .sample_size(samples)
-        .warm_up_time(Duration::from_millis(500))
-        .measurement_time(Duration::from_secs(if adapter.software { 5 } else { 1 }))
-        .without_plots()
-        .configure_from_args();
-    gpu(&mut criterion, &times);
-    let mut slow = criterion.sample_size(10);
-    cpu(&mut slow, &times);
+    let frames = if adapter.software { 10 } else { 100 };
+    let mut times = Times::new();
+    gpu(&mut times, frames);
+    cpu(&mut times);
     println!("\n{:52} {:>8} {:>9} {:>9} {:>9}", "milliseconds a frame", "frames", "median", "5 %", "95 %");
-    for (name, seconds) in times.borrow_mut().iter_mut() {
-        seconds.sort_by(f64::total_cmp);
-        let at = |share: f64| 1e3 * seconds[((seconds.len() - 1) as f64 * share).round() as usize];
-        println!("{name:52} {:>8} {:>9.3} {:>9.3} {:>9.3}", seconds.len(), at(0.5), at(0.05), at(0.95));
+    for (name, seconds) in &mut times {
+        let [median, least, most] = [0.5, 0.05, 0.95].map(|share| 1e3 * quantile(seconds, share));
+        println!("{name:52} {:>8} {median:>9.3} {least:>9.3} {most:>9.3}", seconds.len());
     }
 }
