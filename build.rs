@@ -42,7 +42,9 @@ fn take_late_functions() {
             "wglGetProcAddress",
             "wglMakeCurrent",
         ] {
+            // The library, and the program bhr.
             println!("cargo:rustc-cdylib-link-arg=-Wl,--wrap={name}");
+            println!("cargo:rustc-link-arg-bins=-Wl,--wrap={name}");
         }
     }
 }

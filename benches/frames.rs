@@ -99,8 +99,8 @@ fn is_wanted(name: &str) -> bool {
     words.peek().is_none() || words.any(|word| name.contains(&word))
 }
 
-/// At least so many frames of a scene, if the command line asks for it: a scene is not set up else, which takes as long
-/// as measuring it.
+/// At least so many frames of a scene, if the command line asks for it; otherwise the scene is not even set up, which
+/// takes as long as measuring it.
 fn measure(times: &mut Times, frames: usize, name: &str, stage: impl FnOnce() -> Stage) {
     if !is_wanted(name) {
         return;

@@ -150,7 +150,7 @@ int end_output(int result) {
 
 void say_at_once(void) {
 #ifdef _WIN32
-    setvbuf(stdout, NULL, _IONBF, 0); /* lines are no unit of buffering there */
+    setvbuf(stdout, NULL, _IONBF, 0); /* Windows has no buffering by lines */
 #else
     setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
 #endif

@@ -161,7 +161,13 @@ impl Surface {
     /// window is gone.
     pub fn show(&self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let mut inner = self.inner.lock();
-        let shown = inner.show(show_request);
+        let mut shown = inner.show(show_request);
+        // Whatever a driver makes of a window that is destroyed meanwhile.
+        if shown.as_ref().is_err_and(|error| error.kind != ErrorKind::DeviceLost)
+            && inner.window.as_ref().is_some_and(Window::is_gone)
+        {
+            shown = Err(window_gone());
+        }
         if shown.as_ref().is_err_and(|error| error.kind == ErrorKind::SurfaceLost) {
             inner.end("its window is gone, or took no frame");
         }
@@ -196,13 +202,13 @@ impl Inner {
     fn show(&mut self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let begun = Instant::now();
         self.presentation()?;
+        if self.window.as_ref().is_some_and(Window::is_gone) {
+            return Err(window_gone());
+        }
         if self.size.contains(&0) {
             return Ok(ShowOutcome::Skipped);
         }
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
-        if window.is_gone() {
-            return Err(window_gone());
-        }
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
         if let Some(pacer) = self.presentation.as_mut().and_then(|presentation| presentation.pacer(mode))

@@ -59,7 +59,7 @@ missing_window_packages() {
 missing_packages_of_windows() {
     missing gcc-mingw-w64-x86-64 x86_64-w64-mingw32-gcc
     missing binutils-mingw-w64-x86-64 x86_64-w64-mingw32-objdump
-    missing wine wine
+    missing wine wine wineserver
     missing zip zip
     missing unzip unzip
     missing clang clang

@@ -70,7 +70,8 @@ class Bhr(ConanFile):
     def package(self):
         if self._zip():
             for folder in "bin", "include", "lib", "share":
-                copy(self, "*", os.path.join(self.build_folder, folder), os.path.join(self.package_folder, folder))
+                copy(self, "*", os.path.join(self.build_folder, folder), os.path.join(self.package_folder, folder),
+                     excludes="*.exe")
             return
         kind = "" if self.options.shared else "--static --no-shared"
         # cargo builds within ./install.

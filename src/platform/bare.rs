@@ -23,7 +23,8 @@ pub fn receive_within<T>(from: &Receiver<T>, time: Duration) -> Result<T, RecvTi
 
 // ---- windows ----
 
-/// Whether a window of Windows, by its HWND, is still there, as far as the system tells.
+/// Whether a window of Windows, by its HWND, is still there, as far as the system tells: numbers are used again, and a
+/// new window may have that of one that has gone.
 pub fn window_exists(_window: NonZeroIsize) -> bool {
     true
 }

@@ -20,7 +20,7 @@ const PLATFORMS: [&str; 7] = [
 ];
 
 /// Licences, as crates state them, that let a library of MIT or Apache-2.0 contain their work, for its notice alone.
-const ALLOWED: [&str; 19] = [
+const ALLOWED: [&str; 18] = [
     "(MIT OR Apache-2.0) AND Unicode-3.0",
     "0BSD OR MIT OR Apache-2.0",
     "Apache-2.0",
@@ -37,7 +37,6 @@ const ALLOWED: [&str; 19] = [
     "MIT OR Zlib OR Apache-2.0",
     "MIT/Apache-2.0",
     "Unlicense OR MIT",
-    "Unlicense/MIT",
     "Zlib",
     "Zlib OR Apache-2.0 OR MIT",
 ];

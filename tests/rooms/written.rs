@@ -18,12 +18,11 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
         "py" | "pyi" => Some(&["\"\"\"", "#"]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
         // Scripts without an extension, and what packagers' tools read.
-        "install" | "deb" | "tarball" | "release" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => {
-            Some(&["#"])
-        }
+        "install" | "deb" | "tarball" | "release" | "manpage" | "bare-container" | "rules" | "cmake" | "yml"
+        | "yaml" | "rb" => Some(&["#"]),
         "txt" => name.starts_with("CMake").then_some(&["#"]),
         "md" => Some(&[]),
-        "awk" | "build" | "check-links" | "Doxyfile" => Some(&["#"]),
+        "awk" | "build" | "check-links" | "Doxyfile" | "fetch-toolkits" | "fetch-dxc" => Some(&["#"]),
         _ => None,
     }
 }

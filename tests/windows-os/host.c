@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static LRESULT CALLBACK on_message(HWND window, UINT message, WPARAM w, LPARAM l) {
     return DefWindowProcW(window, message, w, l);
@@ -31,7 +32,6 @@ BhrWindow host_window(HWND window) {
     BHR_INIT(target);
     target.kind = BHR_WINDOW_WIN32;
     target.handle = window;
-    target.aux = GetModuleHandleW(NULL);
     return target;
 }
 
@@ -63,11 +63,12 @@ int host_frames(BhrContext *context, BhrSurface *surface, int count) {
     return shown;
 }
 
-static volatile LONG errors;
+static volatile LONG errors, detours;
 static char          last_error[200];
 
 static void hear(void *user, BhrLogLevel level, const char *message) {
     (void)user;
+    if (strstr(message, "frames of this window are") != NULL) InterlockedIncrement(&detours);
     if (level != BHR_LOG_ERROR) return;
     InterlockedIncrement(&errors);
     snprintf(last_error, sizeof last_error, "%s", message);
@@ -75,13 +76,14 @@ static void hear(void *user, BhrLogLevel level, const char *message) {
 
 BhrContext *host_context(BhrBackend backend) {
     BhrContextOptions options = check_options(backend);
-    options.log_level = BHR_LOG_ERROR;
+    options.log_level = BHR_LOG_INFO;
     options.log_fn = hear;
     return check_context_with(&options);
 }
 
 LONG        host_errors(void) { return errors; }
 const char *host_last_error(void) { return last_error; }
+LONG        host_detours(void) { return detours; }
 
 void host_save_frame(BhrContext *context, uint32_t width, uint32_t height, const char *path) {
     size_t         bytes = (size_t)width * height * 4;

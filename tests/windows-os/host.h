@@ -10,16 +10,18 @@
 
 /* A visible window without a frame, so that all of it is bhr's; NULL, and a failed check, where there is none. */
 HWND        host_open(int x, int y, int width, int height);
-BhrWindow   host_window(HWND window);
+BhrWindow   host_window(HWND window); /* without its HINSTANCE, as hosts with GLFW have it */
 BhrSurface *host_surface(BhrContext *context, HWND window, uint32_t width, uint32_t height, BhrPresentMode mode);
 void        host_pump(void); /* the messages of this thread's windows */
 /* Renders until so many frames are in the window, or a minute is over. How many there were. */
 int host_frames(BhrContext *context, BhrSurface *surface, int count);
 
-/* A context whose messages of level ERROR are counted. */
-BhrContext   *host_context(BhrBackend backend);
-LONG          host_errors(void);
-const char   *host_last_error(void);
+/* A context whose messages of level ERROR are counted, and those that say of a window that another adapter than the
+ * context's presents to it, or none. */
+BhrContext *host_context(BhrBackend backend);
+LONG        host_errors(void);
+const char *host_last_error(void);
+LONG        host_detours(void);
 
 /* Writes the context's frame to a file, as RGBA8: the script compares the screen with it. */
 void host_save_frame(BhrContext *context, uint32_t width, uint32_t height, const char *path);

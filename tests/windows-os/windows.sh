@@ -104,22 +104,23 @@ example_has() {
 }
 
 # example_on NAME WIDTH HEIGHT PROGRAM OPTIONS...: its window has so many pixels and shows what it has saved; it follows
-# two other sizes while it holds its picture, and ends by itself with status 0.
+# two other sizes while it holds its picture, and ends with status 0 when its window is closed.
 example_on() {
     local folder=$scratch/example-$1 status=0
     mkdir -- "$folder" && cd -- "$folder" || return 1
     timeout -k 10 "$seconds" wine "$scratch/examples/build/programs/$4.exe" --frames 3 --screenshot held.png \
-        --hold 20 "${@:5}" >said 2>&1 &
+        --hold 240 "${@:5}" >said 2>&1 &
     example_pid=$!
-    example_until 120 example_says '^holding' && example_until 20 example_is_found &&
-        example_until 15 example_shows_held || status=1
+    example_until 120 example_says '^holding' && example_until 60 example_is_found &&
+        example_until 60 example_shows_held || status=1
     [ -z "${BHR_KEEP_SHOTS:-}" ] || cp -- shot.png "$BHR_KEEP_SHOTS/$1.png"
     [ "$status" -ne 0 ] || {
         note '%s: %s\n' "$1" "$example_steps"
         [ "$(identify -format '%w %h' held.png)" = "$2 $3" ] && xdotool windowsize "$example_window" 320 200 &&
-            example_until 15 example_has 320 200 && xdotool windowsize "$example_window" 500 260 &&
-            example_until 15 example_has 500 260 || status=1
+            example_until 60 example_has 320 200 && xdotool windowsize "$example_window" 500 260 &&
+            example_until 60 example_has 500 260 || status=1
     }
+    xdotool windowquit "$example_window"
     wait "$example_pid" || status=1
     cat -- said
     ! example_says '^cannot' && [ "$status" -eq 0 ]
@@ -134,6 +135,8 @@ display_has() {
 # On a display of 144 dots per inch a window of 480 x 300 has 720 x 450 pixels, where the program asks for that, and
 # Windows stretches nothing.
 dense_display() {
+    local status=0
     display_has 144 && example_on sdl-dense 720 450 sdl_window --backend cpu --size 480x300 &&
-        example_on viewer-dense 1920 1080 viewer --backend vulkan && display_has 96
+        example_on viewer-dense 1920 1080 viewer --backend vulkan || status=1
+    display_has 96 && return "$status"
 }

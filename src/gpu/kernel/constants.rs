@@ -26,58 +26,74 @@ use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
-use std::fmt::Debug;
 
-/// A value of a kind: its type and itself, as WGSL.
-macro_rules! wgsl {
+/// A value, before it is printed. Printing each where it is named would make a function of 68 KB.
+enum Value {
+    U32(u32),
+    I32(i32),
+    F32(f32),
+    /// Vectors, arrays and matrices: the type, and its numbers.
+    Many(String, Vec<f32>),
+}
+
+impl Value {
+    /// The type and the value, as WGSL.
+    fn wgsl(&self) -> String {
+        match self {
+            Self::U32(value) => format!("u32 = {value}u"),
+            Self::I32(value) => format!("i32 = {value}"),
+            // Every compiler reads this as the number: the shortest decimal of the largest is above it, which Chrome's
+            // refuses.
+            Self::F32(f32::MAX) => "f32 = 0x1.fffffep+127".to_owned(),
+            Self::F32(value) => format!("f32 = {value:?}"),
+            Self::Many(kind, values) => {
+                let list = values.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ");
+                format!("{kind} = {kind}({list})")
+            }
+        }
+    }
+}
+
+/// A value of a kind.
+macro_rules! value {
     (u32 $value:expr) => {
-        format!("u32 = {}u", $value as u32)
+        Value::U32($value as u32)
     };
     (i32 $value:expr) => {
-        format!("i32 = {}", $value as i32)
+        Value::I32($value as i32)
     };
     (f32 $value:expr) => {
-        number($value as f32)
+        Value::F32($value as f32)
     };
     (vec2 $value:expr) => {
-        format!("vec2<f32> = vec2<f32>({})", list($value.map(|v| v as f32)))
+        Value::Many("vec2<f32>".to_owned(), $value.map(|v| v as f32).to_vec())
     };
     (vec3 $value:expr) => {
-        format!("vec3<f32> = vec3<f32>({})", list($value.map(|v| v as f32)))
+        Value::Many("vec3<f32>".to_owned(), $value.map(|v| v as f32).to_vec())
     };
     (vec4 $value:expr) => {
-        format!("vec4<f32> = vec4<f32>({})", list($value.map(|v| v as f32)))
+        Value::Many("vec4<f32>".to_owned(), $value.map(|v| v as f32).to_vec())
     };
     (array $value:expr) => {
-        format!("array<f32, {0}> = array<f32, {0}>({1})", $value.len(), list($value.map(|v| v as f32)))
+        Value::Many(format!("array<f32, {}>", $value.len()), $value.map(|v| v as f32).to_vec())
     };
     (mat3x2 $value:expr) => {
-        format!("mat3x2<f32> = mat3x2<f32>({})", list::<f32>($value.into_iter().flatten()))
+        Value::Many("mat3x2<f32>".to_owned(), $value.into_iter().flatten().collect())
     };
 }
 
 /// Constants by name, kind and value.
 macro_rules! constants {
-    ($($name:ident: $kind:ident = $value:expr;)*) => { vec![$((stringify!($name), wgsl!($kind $value))),*] };
-}
-
-/// A number's type and itself, which every compiler reads as this one: the shortest decimal of the largest is above it,
-/// which Chrome's refuses.
-fn number(value: f32) -> String {
-    if value == f32::MAX { "f32 = 0x1.fffffep+127".to_owned() } else { format!("f32 = {value:?}") }
-}
-
-fn list<T: Debug>(values: impl IntoIterator<Item = T>) -> String {
-    values.into_iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ")
+    ($($name:ident: $kind:ident = $value:expr;)*) => { vec![$((stringify!($name), value!($kind $value))),*] };
 }
 
 /// The fragment.
 pub fn fragment() -> String {
-    all().into_iter().map(|(name, value)| format!("const {name}: {value};\n")).collect()
+    all().into_iter().map(|(name, value)| format!("const {name}: {};\n", value.wgsl())).collect()
 }
 
-/// Name; type and value as WGSL.
-fn all() -> Vec<(&'static str, String)> {
+/// Each with its name.
+fn all() -> Vec<(&'static str, Value)> {
     constants! {
         OUTPUT_DEPTH: u32 = RayOutputKind::Depth;
         OUTPUT_SKY: u32 = RayOutputKind::Sky;

@@ -38,7 +38,7 @@ unsafe extern "system" {
 /// Characters of the longest path.
 const LONGEST_PATH: usize = 32_768;
 
-/// The number of a window's HINSTANCE among what it keeps.
+/// The index by which GetWindowLongPtr gives a window's HINSTANCE.
 const GWLP_HINSTANCE: i32 = -6;
 
 const GET_MODULE_HANDLE_EX_FLAG_PIN: u32 = 1;
