@@ -161,13 +161,11 @@ impl Surface {
     /// window is gone.
     pub fn show(&self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let mut inner = self.inner.lock();
-        let mut shown = inner.show(show_request);
         // Whatever a driver makes of a window that is destroyed meanwhile.
-        if shown.as_ref().is_err_and(|error| error.kind != ErrorKind::DeviceLost)
-            && inner.window.as_ref().is_some_and(Window::is_gone)
-        {
-            shown = Err(window_gone());
-        }
+        let shown = inner.show(show_request).map_err(|error| {
+            let is_gone = inner.window.as_ref().is_some_and(Window::is_gone);
+            if is_gone && error.kind != ErrorKind::DeviceLost { window_gone() } else { error }
+        });
         if shown.as_ref().is_err_and(|error| error.kind == ErrorKind::SurfaceLost) {
             inner.end("its window is gone, or took no frame");
         }
