@@ -91,7 +91,8 @@ static int pump_until(const Renderer *renderer, LONG frames) {
 /* The window changes its size, or goes, at another moment of a frame in every round. */
 static void changes_meanwhile(BhrContext *context, int round, int destroys) {
     HWND     window = host_open(40, 40, WIDTH, HEIGHT);
-    Renderer renderer = {context, host_surface(context, window, WIDTH, HEIGHT, BHR_PRESENT_IMMEDIATE), 0, 0, BHR_OK};
+    Renderer renderer = {.context = context};
+    renderer.surface = host_surface(context, window, WIDTH, HEIGHT, BHR_PRESENT_IMMEDIATE);
     if (renderer.surface == NULL) return;
     HANDLE thread = CreateThread(NULL, 0, renders, &renderer, 0, NULL);
     if (!CHECK(thread != NULL, "no thread: error %lu", GetLastError())) return;
