@@ -75,6 +75,8 @@ missing_packages_of_aarch64() {
     [[ " $* " != *" vulkan "* ]] || [ -e /usr/lib/aarch64-linux-gnu/libvulkan.so.1 ] ||
         printf '%s\n' libvulkan1:arm64
     missing gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc aarch64-linux-gnu-ld
+    command -v aarch64-linux-gnu-gcc >/dev/null && compiles aarch64-linux-gnu-gcc c stdio.h ||
+        printf '%s\n' libc6-dev-arm64-cross
     missing qemu-user qemu-aarch64
     missing debhelper dh
 }

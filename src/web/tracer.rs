@@ -279,7 +279,7 @@ impl Tracer {
         aborts.check()?;
         let (device, size) = (tracer.device(), [request.width, request.height]);
         let most = device.limits().max_texture_dimension_2d;
-        for (name, side) in ["width", "height"].into_iter().zip(size).filter(|(_, side)| *side > most) {
+        if let Some((name, side)) = ["width", "height"].into_iter().zip(size).find(|(_, side)| *side > most) {
             return Err(Error::argument(format!("{name} is {side}; a canvas of this device has at most {most}")));
         }
         let ready = tracer.make_ready(scene, request, true, &|| aborts.check()).await?;

@@ -120,7 +120,7 @@ example_on() {
             example_until 60 example_has 320 200 && xdotool windowsize "$example_window" 500 260 &&
             example_until 60 example_has 500 260 || status=1
     }
-    xdotool windowquit "$example_window"
+    timeout 60 wine taskkill /im "$4.exe" # asks its window to close
     wait "$example_pid" || status=1
     cat -- said
     ! example_says '^cannot' && [ "$status" -eq 0 ]
