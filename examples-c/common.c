@@ -174,7 +174,7 @@ uint32_t cores(void) {
 
 double wall_seconds(void) {
 #ifdef _WIN32
-    LARGE_INTEGER now, a_second; /* finer than a frame, as GetTickCount64 is not; neither fails */
+    LARGE_INTEGER now, a_second; /* GetTickCount64 is coarser than a frame; these calls cannot fail */
     QueryPerformanceCounter(&now);
     QueryPerformanceFrequency(&a_second);
     return (double)now.QuadPart / (double)a_second.QuadPart;

@@ -54,7 +54,7 @@ void     progress_draw(Progress *progress, double fraction); /* nothing in the f
 void     progress_clear(Progress *progress);                 /* takes the bar off the line */
 
 /* ---- the process ---- */
-void     say_at_once(void);             /* what it prints is read while it runs, from a file too; call it first */
+void     say_at_once(void);             /* stdout can be read while the program runs, from a file too; call it first */
 int      end_output(int result);        /* an exit status: EXIT_FAILURE instead of 0 when stdout cannot be written */
 double   wall_seconds(void);            /* monotonic; only differences mean something */
 uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */

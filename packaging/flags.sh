@@ -17,10 +17,11 @@ rustc_flags() {
     export CARGO_ENCODED_RUSTFLAGS=${CARGO_ENCODED_RUSTFLAGS%"$separator"}
 }
 
-# find_standard_library TRIPLE: sets standard_library, the arguments by which cargo builds that of the target, empty
-# where rustup has installed it, and sources_of_rust. Cargo wants RUSTC_BOOTSTRAP=1 beside them: stable compilers take
-# -Z only so. Says what to install, and fails, where there are no sources of the compiler's own version either. $root is
-# the checkout, in which a file rust-toolchain would count.
+# find_standard_library TRIPLE: sets two variables. standard_library has the arguments by which cargo builds that of
+# the target, and is empty where it is installed; sources_of_rust is the folder of Rust's sources. Where there are
+# arguments, set RUSTC_BOOTSTRAP=1: stable compilers refuse -Z without it. Where there are no sources of the compiler's
+# own version either, it says what to install, and fails. $root is the checkout, in which a file rust-toolchain would
+# count.
 find_standard_library() {
     standard_library=()
     sources_of_rust=$(cd -- "$root" && rustc --print sysroot)/lib/rustlib/src/rust

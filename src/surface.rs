@@ -161,7 +161,7 @@ impl Surface {
     /// window is gone.
     pub fn show(&self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let mut inner = self.inner.lock();
-        // Whatever a driver makes of a window that is destroyed meanwhile.
+        // Drivers report a window that is destroyed during a frame by many errors. A lost device is one of its own.
         let shown = inner.show(show_request).map_err(|error| {
             let is_gone = inner.window.as_ref().is_some_and(Window::is_gone);
             if is_gone && error.kind != ErrorKind::DeviceLost { window_gone() } else { error }

@@ -69,8 +69,8 @@ impl Window {
         !self.is_gone() && self.x11.as_ref().is_none_or(|window| window.size().is_some())
     }
 
-    /// Whether it is known to be gone without asking a server: on Windows. Drivers there may go on taking frames for a
-    /// window that was destroyed, which nobody sees.
+    /// Whether the window is gone, as far as that can be told without asking a server; always false but on Windows. It
+    /// has to be asked there, as drivers may go on taking frames for a destroyed window.
     pub fn is_gone(&self) -> bool {
         matches!(self.native, NativeWindow::Win32 { hwnd, .. } if !platform::window_exists(hwnd))
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A host's window by its platform's handles, and the raw-window-handle that stands for it. Looks behind no handle but
-//! that of Windows, which knows what is missing.
+//! A host's window by its platform's handles, and the raw-window-handle that stands for it. Follows no handle, except
+//! that it asks Windows for the HINSTANCE of a window whose host gave none.
 
 use super::claim;
 use crate::error::{Error, Result};
@@ -19,7 +19,7 @@ pub enum NativeWindow {
     Xcb { connection: NonNull<c_void>, window: NonZeroU32, visual: Option<NonZeroU32>, screen: i32 },
     /// `wl_display *`, `wl_surface *`.
     Wayland { display: NonNull<c_void>, surface: NonNull<c_void> },
-    /// `HWND`, `HINSTANCE`; without the latter, that of whoever made the window.
+    /// `HWND`, `HINSTANCE`; if the latter is absent, Windows is asked for the window's own.
     Win32 { hwnd: NonZeroIsize, hinstance: Option<NonZeroIsize> },
     /// `NSView *`.
     AppKit { view: NonNull<c_void> },

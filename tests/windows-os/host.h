@@ -16,8 +16,8 @@ void        host_pump(void); /* the messages of this thread's windows */
 /* Renders until so many frames are in the window, or a minute is over. How many there were. */
 int host_frames(BhrContext *context, BhrSurface *surface, int count);
 
-/* A context whose messages of level ERROR are counted, and those that say of a window that another adapter than the
- * context's presents to it, or none. */
+/* A context that counts two kinds of messages: those of level ERROR (host_errors), and those that say that another
+ * adapter than the context's, or none, presents to a window (host_detours). */
 BhrContext *host_context(BhrBackend backend);
 LONG        host_errors(void);
 const char *host_last_error(void);

@@ -126,14 +126,14 @@ example_on() {
     ! example_says '^cannot' && [ "$status" -eq 0 ]
 }
 
-# display_has DPI: of the Windows that programs find from now on.
+# display_has DPI: sets the dots per inch for programs that start from now on.
 display_has() {
     timeout 60 wine reg add 'HKCU\Control Panel\Desktop' /v LogPixels /t REG_DWORD /d "$1" /f >/dev/null &&
         timeout 60 wineserver -w
 }
 
-# On a display of 144 dots per inch a window of 480 x 300 has 720 x 450 pixels, where the program asks for that, and
-# Windows stretches nothing.
+# On a display of 144 dots per inch a window of SDL's of 480 x 300 units has 720 x 450 pixels, and the viewer's, which is
+# 1280 x 720 where nobody asks for a size, 1920 x 1080. Windows stretches neither.
 dense_display() {
     local status=0
     display_has 144 && example_on sdl-dense 720 450 sdl_window --backend cpu --size 480x300 &&

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Looks into manifests for winget as its schemas do: their files, what each must say, and that the program that they
-name is in the zip.
+"""Checks the manifests for winget: the files are there, each has the fields that winget's schemas require, the checksum
+is the zip's, and the zip has the program that they name. The schemas themselves are not used.
 
     winget.py FOLDER ZIP
 """
@@ -32,7 +32,7 @@ for name, fields in REQUIRED.items():
 assert len({(one["PackageIdentifier"], one["PackageVersion"]) for one in said.values()}) == 1, said
 installer = said["bhr.bhr.installer.yaml"]
 assert installer["InstallerSha256"] == hashlib.sha256(archive.read_bytes()).hexdigest().upper()
-assert re.fullmatch(r"(https?|file)://\S+", installer["InstallerUrl"]), installer["InstallerUrl"]
+assert re.fullmatch(r"https?://\S+", installer["InstallerUrl"]), installer["InstallerUrl"]
 program = installer["RelativeFilePath"].replace("\\", "/")
 assert zipfile.ZipFile(archive).read(program)[:2] == b"MZ", program
 print(program)
