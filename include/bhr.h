@@ -326,9 +326,9 @@ BHR_NODISCARD BhrStatus bhr_context_options_init(BhrContextOptions *options, siz
  * BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, and the log says
  * why. End *out_context with bhr_context_destroy.
  * Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a compatible_window that does not exist (X11, Windows); UNSUPPORTED
- * for one of another platform, and in libraries that were built without the cargo feature window for any, without gl
- * for BHR_BACKEND_GL; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot
- * present to compatible_window. */
+ * for a compatible_window of another platform, for any in a library built without the cargo feature window, and for
+ * BHR_BACKEND_GL in one built without gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot be
+ * opened, or cannot present to compatible_window. */
 BHR_NODISCARD BhrStatus bhr_context_create(uint32_t abi_version, const BhrContextOptions *options,
                                            BhrContext **out_context);
 
