@@ -132,8 +132,8 @@ display_has() {
         timeout 60 wineserver -w
 }
 
-# On a display of 144 dots per inch a window of SDL's of 480 x 300 units has 720 x 450 pixels, and the viewer's, which is
-# 1280 x 720 where nobody asks for a size, 1920 x 1080. Windows stretches neither.
+# On a display of 144 dots per inch a window of SDL's of 480 x 300 units has 720 x 450 pixels, and the viewer's, which
+# is 1280 x 720 where nobody asks for a size, 1920 x 1080. Windows stretches neither.
 dense_display() {
     local status=0
     display_has 144 && example_on sdl-dense 720 450 sdl_window --backend cpu --size 480x300 &&

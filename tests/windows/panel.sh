@@ -287,7 +287,7 @@ panel_brighter() { awk -v a="$1" -v b="$2" 'BEGIN { print a " against " b; exit 
 # A setting is kept as A: the left of the picture goes on to show it while B changes on the right; the line between them
 # follows the mouse; and A and B change places.
 panel_compares() {
-    local left top width height half kept
+    local left top width height half kept left_of_line
     panel_open --size 1280x720 --paused --backend cpu && panel_find || return 1
     read -r _ left top width height <<<"$(panel_last '^picture ')"
     half=$((width / 2 - 40))
@@ -305,11 +305,21 @@ panel_compares() {
         panel_point $((left + width / 3)) $((top + 320)) && panel_point $((left + width / 4)) $((top + 320)) &&
         xdotool mouseup 1 && panel_says 1 '^wipe 0\.2[45]' || return 1
     panel_expect "$(grep -c '^scene ' "$panel_log")" 1 || return 1
-    panel_click_on 'A and B/swap' && panel_says 1 '^compared [2-9]' && sleep 3 &&
-        import -window "$panel_window" "$scratch/wipe-2.png" || return 1
-    panel_brighter "$(panel_mean "$scratch/wipe-2.png" "$((width / 4 - 40))x$height+$left+$top")" \
-        "$(panel_mean "$scratch/wipe-0.png" "$((width / 4 - 40))x$height+$left+$top")" &&
+    panel_click_on 'A and B/swap' && panel_says 1 '^compared [2-9]' || return 1
+    left_of_line=$((width / 4 - 40))x$height+$left+$top
+    panel_shows_brighter "$left_of_line" "$(panel_mean "$scratch/wipe-0.png" "$left_of_line")" &&
         panel_close $((left + 100)) 200
+}
+
+# panel_shows_brighter AREA MEAN: the window's area is brighter than that, once frames of both pictures are done, which
+# takes as long as the machine has other work.
+panel_shows_brighter() {
+    local end=$((SECONDS + panel_action))
+    until import -window "$panel_window" "$scratch/wipe-2.png" &&
+        panel_brighter "$(panel_mean "$scratch/wipe-2.png" "$1")" "$2"; do
+        [ "$SECONDS" -lt "$end" ] && kill -0 "$panel_pid" 2>/dev/null || return 1
+        sleep 0.5
+    done
 }
 
 # The share of bright pixels beside the exposure is that of the picture, as another program counts it.
@@ -326,6 +336,16 @@ panel_counts_light() {
         exit !(counted > 0.01 && said - counted < 0.003 && counted - said < 0.003) }'
 }
 
+# panel_takes_size WIDTH HEIGHT: asks for the size, and again where that is lost, as it was once right after the start.
+panel_takes_size() {
+    local i
+    for ((i = 0; i < 5; i++)); do
+        xdotool windowsize "$panel_window" "$1" "$2"
+        ! panel_hears 1 "^picture 0 0 $1 $2\$" $((panel_action / 5 + 1)) || return 0
+    done
+    panel_complain "no picture has $1 x $2 pixels"
+}
+
 # Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.
 panel_resizes() {
     local size width height frames
@@ -333,8 +353,7 @@ panel_resizes() {
     for size in 1000x700 640x480 333x77 1x1 200x900 2x500 1599x33 17x17 1280x720 400x300; do
         width=${size%x*}
         height=${size#*x}
-        xdotool windowsize "$panel_window" "$width" "$height"
-        panel_says 1 "^picture 0 0 $width $height\$" || return 1
+        panel_takes_size "$width" "$height" || return 1
         sleep 0.2
     done
     frames=$(grep -c '^frames ' "$panel_log")
