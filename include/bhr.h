@@ -1622,7 +1622,8 @@ BHR_NODISCARD BhrStatus bhr_surface_create(BhrContext *context, const BhrWindow 
 /** Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
  * size are made by the next frame. X11: frames have the size that the window really has; this call says that it has
  * changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
- * until then.
+ * until then. Windows: call it on the thread that renders, not on the window's, if these are two: it waits for a
+ * frame on its way, which may wait for the window's messages.
  * Errors: INVALID_ARGUMENT for a side beyond 2^20; UNSUPPORTED for one that the device's images cannot have;
  * SURFACE_LOST. */
 BHR_NODISCARD BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
