@@ -12,12 +12,16 @@ panel_open() {
     panel_log=$(mktemp -p "$scratch" panel-XXXXXX)
     "$panel" --verbose "$@" >"$panel_log" 2>"$panel_log.err" &
     panel_pid=$!
+    trap panel_gone EXIT
     panel_says 1 '^frames ' "$panel_start"
 }
 
-# Puts the window of a program that stays open into $panel_window.
+# panel_gone: a test that fails, however it does, leaves no window that hides the next test's.
+panel_gone() { kill "$panel_pid" 2>/dev/null && wait "$panel_pid"; }
+
+# Puts the window of a program that stays open into $panel_window. --all: of this program, not of any other panel.
 panel_find() {
-    read -r panel_window < <(xdotool search --pid "$panel_pid" --name 'bhr: panel')
+    read -r panel_window < <(xdotool search --all --pid "$panel_pid" --name 'bhr: panel')
     [ -n "$panel_window" ] || panel_complain 'it has no window'
 }
 
@@ -281,45 +285,58 @@ panel_fits_screens() {
 # panel_mean FILE COLUMNS: the mean of the columns WIDTHxHEIGHT+X+Y of a picture, 0 to 255.
 panel_mean() { convert "$1" -crop "$2" -colorspace Gray -format '%[fx:255*mean]' info:; }
 
-# panel_brighter A B: A is more than half as bright again.
-panel_brighter() { awk -v a="$1" -v b="$2" 'BEGIN { print a " against " b; exit !(a > 1.5 * b) }'; }
+# panel_shows FILE CONDITION...: takes pictures of the window until the condition holds of FILE, with the mouse where no
+# tooltip follows: one beside a slider hides a part of the picture, and when it does depends on how fast frames come.
+panel_shows() {
+    local end=$((SECONDS + panel_action)) file=$1
+    shift
+    panel_point 1275 715 || return 1
+    until sleep 0.5 && import -window "$panel_window" "$file" && "$@"; do
+        [ "$SECONDS" -lt "$end" ] && kill -0 "$panel_pid" 2>/dev/null || return 1
+    done
+}
+
+# panel_rests FILE: twice the same.
+panel_rests() {
+    cp -- "$1" "$1.first" && sleep 1 && import -window "$panel_window" "$1" &&
+        [ "$(compare -metric AE "$1.first" "$1" null: 2>&1)" = 0 ]
+}
+
+# panel_equal_means FILE COLUMNS MEAN
+panel_equal_means() {
+    awk -v a="$3" -v b="$(panel_mean "$1" "$2")" \
+        'BEGIN { print "left of the line " a ", then " b; exit !(a - b < 0.1 && b - a < 0.1) }'
+}
+
+# panel_brighter_than FILE OTHER COLUMNS: these columns are more than half as bright again as in the other picture.
+panel_brighter_than() {
+    awk -v a="$(panel_mean "$1" "$3")" -v b="$(panel_mean "$2" "$3")" \
+        'BEGIN { print a " against " b; exit !(a > 1.5 * b) }'
+}
 
 # A setting is kept as A: the left of the picture goes on to show it while B changes on the right; the line between them
 # follows the mouse; and A and B change places.
 panel_compares() {
-    local left top width height half kept left_of_line
+    local left top width height before=$scratch/wipe-0.png beside=$scratch/wipe-1.png swapped=$scratch/wipe-2.png
+    local left_half right_half left_of_line
     panel_open --size 1280x720 --paused --backend cpu && panel_find || return 1
     read -r _ left top width height <<<"$(panel_last '^picture ')"
-    half=$((width / 2 - 40))
-    panel_click_on tabs/Film && sleep 1 && import -window "$panel_window" "$scratch/wipe-0.png" || return 1
-    kept=$(panel_mean "$scratch/wipe-0.png" "${half}x$height+$left+$top")
+    left_half=$((width / 2 - 40))x$height+$left+$top
+    right_half=$((width / 2 - 40))x$height+$((left + width / 2 + 40))+$top
+    left_of_line=$((width / 4 - 40))x$height+$left+$top
+    panel_click_on tabs/Film && sleep 1 && panel_shows "$before" panel_rests "$before" || return 1
     panel_click_on 'A and B/keep as A' && panel_says 1 '^compared 1$' &&
-        panel_set Exposure/exposure 3 '^frames [2-9]' && sleep 3 &&
-        import -window "$panel_window" "$scratch/wipe-1.png" || return 1
-    awk -v a="$kept" -v b="$(panel_mean "$scratch/wipe-1.png" "${half}x$height+$left+$top")" \
-        'BEGIN { print "left of the line " a ", then " b; exit !(a - b < 0.5 && b - a < 0.5) }' || return 1
-    panel_brighter "$(panel_mean "$scratch/wipe-1.png" "${half}x$height+$((left + width / 2 + 40))+$top")" \
-        "$(panel_mean "$scratch/wipe-0.png" "${half}x$height+$((left + width / 2 + 40))+$top")" || return 1
+        panel_set Exposure/exposure 3 '^frames [2-9]' &&
+        panel_shows "$beside" panel_brighter_than "$beside" "$before" "$right_half" &&
+        panel_equal_means "$beside" "$left_half" "$(panel_mean "$before" "$left_half")" || return 1
     # Dragging the line moves nothing else.
     panel_point $((left + width / 2)) $((top + 300)) && xdotool mousedown 1 && sleep 0.3 &&
         panel_point $((left + width / 3)) $((top + 320)) && panel_point $((left + width / 4)) $((top + 320)) &&
         xdotool mouseup 1 && panel_says 1 '^wipe 0\.2[45]' || return 1
     panel_expect "$(grep -c '^scene ' "$panel_log")" 1 || return 1
-    panel_click_on 'A and B/swap' && panel_says 1 '^compared [2-9]' || return 1
-    left_of_line=$((width / 4 - 40))x$height+$left+$top
-    panel_shows_brighter "$left_of_line" "$(panel_mean "$scratch/wipe-0.png" "$left_of_line")" &&
+    panel_click_on 'A and B/swap' && panel_says 1 '^compared [2-9]' &&
+        panel_shows "$swapped" panel_brighter_than "$swapped" "$before" "$left_of_line" &&
         panel_close $((left + 100)) 200
-}
-
-# panel_shows_brighter AREA MEAN: the window's area is brighter than that, once frames of both pictures are done, which
-# takes as long as the machine has other work.
-panel_shows_brighter() {
-    local end=$((SECONDS + panel_action))
-    until import -window "$panel_window" "$scratch/wipe-2.png" &&
-        panel_brighter "$(panel_mean "$scratch/wipe-2.png" "$1")" "$2"; do
-        [ "$SECONDS" -lt "$end" ] && kill -0 "$panel_pid" 2>/dev/null || return 1
-        sleep 0.5
-    done
 }
 
 # The share of bright pixels beside the exposure is that of the picture, as another program counts it.
@@ -336,16 +353,6 @@ panel_counts_light() {
         exit !(counted > 0.01 && said - counted < 0.003 && counted - said < 0.003) }'
 }
 
-# panel_takes_size WIDTH HEIGHT: asks for the size, and again where that is lost, as it was once right after the start.
-panel_takes_size() {
-    local i
-    for ((i = 0; i < 5; i++)); do
-        xdotool windowsize "$panel_window" "$1" "$2"
-        ! panel_hears 1 "^picture 0 0 $1 $2\$" $((panel_action / 5 + 1)) || return 0
-    done
-    panel_complain "no picture has $1 x $2 pixels"
-}
-
 # Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.
 panel_resizes() {
     local size width height frames
@@ -353,7 +360,8 @@ panel_resizes() {
     for size in 1000x700 640x480 333x77 1x1 200x900 2x500 1599x33 17x17 1280x720 400x300; do
         width=${size%x*}
         height=${size#*x}
-        panel_takes_size "$width" "$height" || return 1
+        xdotool windowsize "$panel_window" "$width" "$height"
+        panel_says 1 "^picture 0 0 $width $height\$" || return 1
         sleep 0.2
     done
     frames=$(grep -c '^frames ' "$panel_log")
