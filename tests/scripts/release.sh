@@ -74,8 +74,10 @@ echo x >"$1/bhr-$version-x86_64-windows.zip"
 echo other >"$1/SHA256SUMS"
 END
     stand_in packaging/windows-packages <<'END'
-case $1 in --url=*) echo "$1" && shift ;; esac
+url=
+case $1 in --url=*) url=$1 && echo "$1" && shift ;; esac
 mkdir -p "$2/vcpkg-$version/bhr" "$2/conan-$version"
+[ -z "$url" ] || { mkdir "$2/winget-$version" && echo x >"$2/winget-$version/bhr.yaml"; }
 echo x | tee "$2/bhr.$version.nupkg" "$2/vcpkg-$version/bhr/portfile.cmake" "$2/conan-$version/conanfile.py"
 END
     stand_in packaging/aarch64 <<'END'
@@ -98,7 +100,7 @@ END
     # made, unless the part was named.
     cd -- "$scratch/ready" && rm -r -- "$made" &&
         BHR_RELEASE_URL=file:///there/ PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
-        [ "$(wc -l <"$made/SHA256SUMS")" -eq 15 ] && ! grep "left out" "$scratch/said" &&
+        [ "$(wc -l <"$made/SHA256SUMS")" -eq 16 ] && ! grep "left out" "$scratch/said" &&
         grep -xF -e "--url=file:///there/bhr-$version-x86_64-windows.zip" "$scratch/said" && rm -r -- "$made" &&
         WITHOUT_MINGW="no MinGW" PATH=$bin:$PATH packaging/release "$made" >"$scratch/said" &&
         grep -xF "left out: windows: no MinGW" "$scratch/said" && [ "$(wc -l <"$made/SHA256SUMS")" -eq 10 ] &&
@@ -123,6 +125,10 @@ release_refuses() {
     refuses 'include/bhr.h says version 9.' edit 's/^\(#define BHR_VERSION_MAJOR\) [0-9]*/\1 9/' include/bhr.h &&
         refuses 'vcpkg.json says version 9.0' \
             edit 's/"version": ".*"/"version": "9.0"/' packaging/vcpkg/bhr/vcpkg.json &&
+        refuses 'package-lock.json says version 9.0' \
+            edit '3s/"version": ".*"/"version": "9.0"/' web/package-lock.json &&
+        refuses 'the package in web/package-lock.json says version 9.0' \
+            edit '/^ *"": {$/,/}/s/"version": ".*"/"version": "9.0"/' web/package-lock.json &&
         refuses 'bhr.rb says version 9.0' edit 's/^  version ".*"/  version "9.0"/' packaging/homebrew/bhr.rb &&
         refuses 'Cargo.lock says version 9.0.0' edit '/^name = "libbhr"/{n;s/".*"/"9.0.0"/}' Cargo.lock &&
         refuses 'metadata.capi.library, says version 9.0.0' \

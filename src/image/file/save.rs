@@ -78,10 +78,12 @@ pub fn save_layers(
     path: &Path,
 ) -> Result<()> {
     for layer in layers {
-        let FileKind::Exr = kind_for(path, layer.image.format())? else {
-            let format = layer.image.format();
+        let format = layer.image.format();
+        // Formats of integers go into no .exr file, though a picture of one alone has files of other kinds.
+        let Some((_, FileKind::Exr)) = kinds_of(format).first() else {
             return Err(Error::unsupported(format!("{format} is no format of layers; they are floats, in .exr")));
         };
+        kind_for(path, format)?;
     }
     let write = || {
         replace::with(path, |file| {
