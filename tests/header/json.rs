@@ -144,6 +144,18 @@ fn a_c_compiler_agrees_with_it() {
 
 /// The types that it names, in C behind the real header: C11 lets a prototype or a typedef be repeated only when it
 /// says the same. A field's type is compared through a pointer to the field.
+/// A value goes in, whatever its name: bindings would make an address of it.
+#[test]
+fn what_comes_out_has_an_address() {
+    let json = committed();
+    for function in entries(&json, "functions").iter().chain(entries(&json, "callbacks")) {
+        for parameter in function["parameters"].as_array().unwrap() {
+            let address = parameter["pointers"].as_u64().unwrap() > 0 || !parameter["array"].is_null();
+            assert!(address || parameter["direction"] == "in", "{}: {parameter}", function["name"]);
+        }
+    }
+}
+
 #[test]
 fn its_types_are_the_headers() {
     let json = committed();

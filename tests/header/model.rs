@@ -189,14 +189,14 @@ impl Declarator {
         parts
     }
 
-    /// How data goes: a constant pointer's target and a value go in; what is named out_ comes out; an opaque type is
-    /// a handle, and anything else is read and written.
+    /// How data goes: a constant pointer's target and a value go in, such as the size of what comes out; what a pointer
+    /// named out_ leads to comes out; an opaque type is a handle, and anything else is read and written.
     fn direction(&self, opaque: &[String]) -> &'static str {
         let address = self.pointers > 0 || self.array.is_some();
-        let output = self.name.starts_with("out_");
         match () {
-            () if output => "out",
-            () if !address || self.constant || opaque.contains(&self.base) || self.base == "void" => "in",
+            () if !address => "in",
+            () if self.name.starts_with("out_") => "out",
+            () if self.constant || opaque.contains(&self.base) || self.base == "void" => "in",
             () => "inout",
         }
     }
