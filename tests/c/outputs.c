@@ -173,6 +173,9 @@ static void layers(BhrContext *context, const char *folder) {
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "depth.Z", bhr_save_outputs(context, twice, sizeof *twice, 2, path));
     images[0] = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, blocks[0], sizeof blocks[0]);
     CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "RGBA8", bhr_save_outputs(context, outputs, sizeof *outputs, 1, path));
+    images[0] = image_of(BHR_FORMAT_RGB10A2_PQ, WIDTH, HEIGHT, blocks[0], sizeof blocks[0]);
+    CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "RGB10A2_PQ is no format of layers",
+                bhr_save_outputs(context, outputs, sizeof *outputs, 1, path));
     file = fopen(path, "rb");
     CHECK(file == NULL, "a refused file is there");
     if (file != NULL) {

@@ -142,8 +142,6 @@ fn a_c_compiler_agrees_with_it() {
     assert_eq!(said.lines().map(str::to_owned).collect::<BTreeSet<_>>(), expected, "left: the compiler");
 }
 
-/// The types that it names, in C behind the real header: C11 lets a prototype or a typedef be repeated only when it
-/// says the same. A field's type is compared through a pointer to the field.
 /// A value goes in, whatever its name: bindings would make an address of it.
 #[test]
 fn what_comes_out_has_an_address() {
@@ -156,6 +154,8 @@ fn what_comes_out_has_an_address() {
     }
 }
 
+/// The types that it names, in C behind the real header: C11 lets a prototype or a typedef be repeated only when it
+/// says the same. A field's type is compared through a pointer to the field.
 #[test]
 fn its_types_are_the_headers() {
     let json = committed();

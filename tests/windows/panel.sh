@@ -285,14 +285,18 @@ panel_fits_screens() {
 # panel_mean FILE COLUMNS: the mean of the columns WIDTHxHEIGHT+X+Y of a picture, 0 to 255.
 panel_mean() { convert "$1" -crop "$2" -colorspace Gray -format '%[fx:255*mean]' info:; }
 
-# panel_shows FILE CONDITION...: takes pictures of the window until the condition holds of FILE, with the mouse where no
-# tooltip follows: one beside a slider hides a part of the picture, and when it does depends on how fast frames come.
+# panel_shows FILE CONDITION...: takes pictures of a window of 1280 x 720 until the condition holds of FILE, with the
+# mouse in its last corner, where no tooltip follows: one beside a slider hides a part of the picture, and when it does
+# depends on how fast frames come.
 panel_shows() {
     local end=$((SECONDS + panel_action)) file=$1
     shift
     panel_point 1275 715 || return 1
     until sleep 0.5 && import -window "$panel_window" "$file" && "$@"; do
-        [ "$SECONDS" -lt "$end" ] && kill -0 "$panel_pid" 2>/dev/null || return 1
+        if [ "$SECONDS" -ge "$end" ] || ! kill -0 "$panel_pid" 2>/dev/null; then
+            panel_complain "the window does not show it: $*"
+            return 1
+        fi
     done
 }
 
@@ -314,6 +318,11 @@ panel_brighter_than() {
         'BEGIN { print a " against " b; exit !(a > 1.5 * b) }'
 }
 
+# panel_differs_in FILE OTHER COLUMNS SAME: COLUMNS are brighter than in the other picture, and SAME as bright.
+panel_differs_in() {
+    panel_brighter_than "$1" "$2" "$3" && panel_equal_means "$1" "$4" "$(panel_mean "$2" "$4")"
+}
+
 # A setting is kept as A: the left of the picture goes on to show it while B changes on the right; the line between them
 # follows the mouse; and A and B change places.
 panel_compares() {
@@ -321,14 +330,15 @@ panel_compares() {
     local left_half right_half left_of_line
     panel_open --size 1280x720 --paused --backend cpu && panel_find || return 1
     read -r _ left top width height <<<"$(panel_last '^picture ')"
+    # Below the line that counts frames.
+    top=$((top + 30)) height=$((height - 30))
     left_half=$((width / 2 - 40))x$height+$left+$top
     right_half=$((width / 2 - 40))x$height+$((left + width / 2 + 40))+$top
     left_of_line=$((width / 4 - 40))x$height+$left+$top
     panel_click_on tabs/Film && sleep 1 && panel_shows "$before" panel_rests "$before" || return 1
     panel_click_on 'A and B/keep as A' && panel_says 1 '^compared 1$' &&
         panel_set Exposure/exposure 3 '^frames [2-9]' &&
-        panel_shows "$beside" panel_brighter_than "$beside" "$before" "$right_half" &&
-        panel_equal_means "$beside" "$left_half" "$(panel_mean "$before" "$left_half")" || return 1
+        panel_shows "$beside" panel_differs_in "$beside" "$before" "$right_half" "$left_half" || return 1
     # Dragging the line moves nothing else.
     panel_point $((left + width / 2)) $((top + 300)) && xdotool mousedown 1 && sleep 0.3 &&
         panel_point $((left + width / 3)) $((top + 320)) && panel_point $((left + width / 4)) $((top + 320)) &&

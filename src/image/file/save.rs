@@ -69,7 +69,7 @@ pub fn save_text(text: &str, path: &Path) -> Result<()> {
 }
 
 /// Writes float images of one size to one `.exr` file, each channel by its name, with attributes and the primaries of
-/// their light. It appears as in [`save`]. Errors: UNSUPPORTED for another extension or an 8-bit format, and for EXR
+/// their light. It appears as in [`save`]. Errors: UNSUPPORTED for another extension or a format of integers, and
 /// without the cargo feature; INVALID_ARGUMENT for two channels of one name; IO; OUT_OF_MEMORY.
 pub fn save_layers(
     layers: &[Layer<'_>],
