@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Tables of what becomes of the rays of one observer, who is outside the photon region of a spinning hole: sky
-// direction and crossings of the equatorial plane, by look direction. Look directions are in polar coordinates about
-// the centre of the shadow: psi is the angle from the centre, chi the angle around it, psi = R(chi) the critical curve
-// (the shadow's edge). Shared by the kernels that build the tables and those that read them. The reasons are in
-// src/physics/lens/kerr/mod.rs and grid.rs.
+// Tables of what becomes of the rays of one observer, who is outside the photon region of a spinning hole or in its
+// rain frame: sky direction and crossings of the equatorial plane, by look direction. Look directions are in polar
+// coordinates about the centre of the shadow: psi is the angle from the centre, chi the angle around it, psi = R(chi)
+// the critical curve (the shadow's edge). Shared by the kernels that build the tables and those that read them. The
+// reasons are in src/physics/lens/kerr/mod.rs and grid.rs.
 //
 // Columns: KERR_COLUMNS even steps of w = (chi + v) / 2 over [0, 2 pi), where tan v = tan chi / epsilon and epsilon =
 // |cot theta| of the observer, within 0.03 .. 1. Rows: KERR_PER_OCTAVE to an octave of t_hat = |tan((psi - R) / 2)| /
@@ -32,6 +32,11 @@ struct KerrLens {
 // point, delay less the part that diverges at infinity, M). False: a texel holds u of four orders, and a layer serves
 // those four.
 override PATTERN: bool = false;
+
+// The part of a delay that tables leave out, M: divergent_delay of src/physics/lens/kerr/grid.rs.
+fn divergent_delay(u: f32, u_observer: f32) -> f32 {
+    return 1.0 / u_observer + 1.0 / u - 2.0 * log(u / u_observer);
+}
 
 // First row of the branch among all rows.
 fn kerr_first_row(inner: bool) -> u32 {

@@ -4,6 +4,7 @@
 // of a turbulent disk by 0.08 of 255 (root mean square, spin 0.9 and 0.998).
 
 #import constants
+#import camera/chart
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic
@@ -24,11 +25,14 @@ var<private> deferred_count: u32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
+    var delay = crossing.delay;
     if PATTERN {
-        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+        let offsets = chart_offsets(c, crossing.u);
+        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag - offsets.x);
+        delay += offsets.y;
     }
     deferred_count = min(crossing.order + 1u, CROSSINGS_KEPT);
-    deferred_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+    deferred_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, delay);
 }
 
 // No matter is summed along these rays.
@@ -48,13 +52,16 @@ fn ray_record(id: vec2<u32>) -> Record {
     }
     deferred_count = 0u;
     let begin = begin_local(lookup.seen.n);
-    let traced = trace(begin.c, begin.state, settings);
-    record.fate = traced.fate;
-    record.steps = traced.steps;
-    if traced.fate == FATE_ESCAPED {
-        let end = escape(begin.c, traced);
-        record.sky = chart_direction(end.n, end.drag);
-        record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
+    record.fate = FATE_CAPTURED;
+    if begin.has_light {
+        let traced = trace(begin.c, begin.state, settings);
+        record.fate = traced.fate;
+        record.steps = traced.steps;
+        if traced.fate == FATE_ESCAPED {
+            let end = escape(begin.c, traced);
+            record.sky = chart_direction(end.n, end.drag);
+            record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
+        }
     }
     deferred_order = 0u;
     atomicAdd(&deferred.steps, record.steps);

@@ -224,7 +224,7 @@ fn next_looked_up() -> Crossing {
 
 fn add_pattern(crossing: ptr<function, Crossing>, at: Interpolated) {
     let u = at.value.x;
-    let delay = at.value.w + 1.0 / frame.observer_u + 1.0 / u - 2.0 * log(u / frame.observer_u);
+    let delay = at.value.w + divergent_delay(u, frame.observer_u);
     (*crossing).place = EmissionPoint(-log(u), arctan2(at.value.z, at.value.y), select(0.0, delay, DELAY));
     if FOOTPRINTS {
         (*crossing).dx = place_change((*crossing).u, at, lookup.dx);

@@ -61,12 +61,14 @@ impl<'a> LensLookup<'a> {
         record.clear();
         let seen = self.look_direction(x, y);
         let energy = self.momenta.energy(seen.n);
-        if energy <= 0.0 && self.recorder.lens.observer.frame.rain {
+        let angular_momentum = self.momenta.angular_momentum(seen.n);
+        let frame = &self.recorder.lens.observer.frame;
+        if frame.rain && !frame.sees_outside(energy, angular_momentum) {
             return;
         }
         record.energy = energy;
-        record.angular_momentum = self.momenta.angular_momentum(seen.n);
-        if let (true, Some((c, _))) = (self.needs.angles, self.recorder.lens.observer.frame.start(seen.n)) {
+        record.angular_momentum = angular_momentum;
+        if let (true, Some((c, _))) = (self.needs.angles, frame.start(seen.n)) {
             record.polar_momentum = polar_momentum(&c, seen.ratio);
         }
         match self.tables {
@@ -123,7 +125,7 @@ impl<'a> LensLookup<'a> {
     fn look_up_kerr(&self, found: &kerr::KerrLookup, seen: &LookDirection, record: &mut Record) {
         let steps = seen.changes.map(|change| found.place.step(change));
         let mut on_edge = false;
-        for crossing in found.crossings() {
+        for crossing in found.crossings_and_beyond() {
             let u = crossing.image.u;
             on_edge |= self.is_near_disk_edge(u, steps.each_ref().map(|step| crossing.change(step).u));
             if !self.recorder.plane_u.is_some_and(|[outer, inner]| u >= outer && u <= inner) {
@@ -247,7 +249,7 @@ mod tests {
     use crate::physics::geodesic::wrap_angle;
     use crate::physics::trace::Settings;
     use crate::scene::observer::Lens;
-    use crate::scene::{Camera, KerrThreshold, LensTables, Lensing, Motion, Region, Scene};
+    use crate::scene::{Camera, Chart, KerrThreshold, LensTables, Lensing, Motion, Region, Scene};
 
     /// Numbers in [0, 1): a fixed sequence (Knuth's multiplier, TAOCP 3.3.4).
     struct Sequence(u64);
@@ -447,6 +449,39 @@ mod tests {
             assert!(errors.direction < 4e-6 && errors.u < 4e-6 && errors.g < 4e-6, "{errors:?}");
             assert!(errors.azimuth < 2e-5 && errors.delay < 2e-5, "{errors:?}");
             assert!(errors.sky_footprint < 1e-2 && errors.place_footprint < 1e-2, "{errors:?}");
+        }
+    }
+
+    /// Rain observers inside the hole, between its horizons and about to fall in.
+    fn rain_scenes() -> Vec<Scene> {
+        let places = [
+            (0.9, 1.2, 60.0, Motion::FreeFall),
+            (-0.5, 2.4, 40.0, Motion::Velocity),
+            (0.998, 1.3, 110.0, Motion::FreeFall),
+            (0.9, 0.6, 80.0, Motion::Velocity),
+        ];
+        places
+            .map(|(spin, r, inclination, motion)| {
+                let mut scene = scene(spin, r, inclination, 120.0, motion);
+                scene.camera.chart = Chart::Rain;
+                scene.camera.forward = -scene.camera.forward;
+                scene
+            })
+            .into()
+    }
+
+    #[test]
+    fn looking_up_from_within_is_as_tracing() {
+        for mut scene in rain_scenes() {
+            for disk in [scene.disk, None] {
+                scene.disk = disk;
+                let errors = compare(&scene, 1500);
+                println!("r {} {:?}: {errors:?}", scene.camera.position.length(), scene.camera.motion);
+                assert!(errors.traced * if disk.is_some() { 4 } else { 10 } < errors.pixels, "{errors:?}");
+                assert!(errors.direction < 3e-5 && errors.u < 1e-4 && errors.g < 2e-4, "{errors:?}");
+                assert!(errors.azimuth < 3e-4 && errors.delay < 5e-4, "{errors:?}");
+                assert!(errors.sky_footprint < 1e-2 && errors.place_footprint < 3e-2, "{errors:?}");
+            }
         }
     }
 

@@ -266,7 +266,7 @@ impl Constants {
     }
 
     /// For light of E = 1, 1/u^2 may be integrated by parts, so that far observers are no difficulty.
-    fn is_unit_energy(&self) -> bool {
+    pub fn is_unit_energy(&self) -> bool {
         self.energy == 1.0 && self.mu2 == 0.0
     }
 

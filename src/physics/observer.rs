@@ -378,13 +378,19 @@ impl LocalFrame {
         (constants, state)
     }
 
+    /// Whether light of this energy and angular momentum that a rain observer sees can have come from outside the hole.
+    pub fn sees_outside(&self, energy: f64, angular_momentum: f64) -> bool {
+        let r_plus = horizon_outer(self.a);
+        let energy_there = energy * (r_plus * r_plus + self.a * self.a) - self.a * angular_momentum;
+        energy_there > 0.0 || (self.a != 0.0 && self.r > r_plus)
+    }
+
     /// Light in the rain frame, at any spin. Inside the horizon light with P = E (r^2 + a^2) - a L <= 0 at r+ does not
     /// come from outside; without spin that is E <= 0.
     fn start_rain(&self, n: DVec3) -> Option<(Constants, State)> {
-        let (a, r_plus) = (self.a, horizon_outer(self.a));
+        let a = self.a;
         let m = self.doran_momentum(&Momentum::of_light(n));
-        let energy_there = m.energy * (r_plus * r_plus + a * a) - a * (self.sin * m.around);
-        if (a == 0.0 || self.r <= r_plus) && energy_there <= 0.0 {
+        if !self.sees_outside(m.energy, self.sin * m.around) {
             return None;
         }
         // Without spin only light of E > 0 comes this far.

@@ -4,7 +4,7 @@
 use crate::frames::{both, floats, picture};
 use crate::random::{Random, count_from, runs_all};
 use bhr::image::PixelFormat;
-use bhr::scene::{Camera, Chart, Disk, Effects, HotSpot, Motion, Projection, Scene, Sky, Volume};
+use bhr::scene::{Camera, Chart, Disk, Effects, HotSpot, LensTables, Motion, Projection, Scene, Sky, Volume};
 use glam::DVec3;
 
 /// A film of 240 frames from r = 10 M through r+ to just above r-: the second differences in time of the pixels' light
@@ -16,7 +16,8 @@ fn a_fall_of_240_frames_is_one_film() {
     const SIZE: [u32; 2] = [320, 180];
     let spin = 0.9_f64;
     let root = (1.0 - spin * spin).sqrt();
-    for (tracer, mut renderer) in both() {
+    let ways = [LensTables::Never, LensTables::Always];
+    for (tables, (tracer, mut renderer)) in ways.into_iter().flat_map(|tables| both().map(|one| (tables, one))) {
         renderer.scene = Scene::plain();
         let scene = &mut renderer.scene;
         (scene.hole.spin, scene.sky, scene.time) = (spin, Sky::black(), 1e3);
@@ -31,7 +32,7 @@ fn a_fall_of_240_frames_is_one_film() {
             ..Camera::plain()
         };
         scene.disk = Some(Disk { turbulence: 0.0, outer_radius: 20.0, ..Disk::plain() });
-        scene.quality.refines = false;
+        (scene.quality.refines, scene.quality.lens_tables) = (false, tables);
         // Proper time from rest at infinity goes as r^(3/2) or so; the film is slower where the fall is faster.
         let (mut frames, mut jolts, mut radii) = (Vec::<Vec<f32>>::new(), Vec::new(), Vec::new());
         for _ in 0..FRAMES {
@@ -50,14 +51,14 @@ fn a_fall_of_240_frames_is_one_film() {
             (scene.camera, scene.time) = (after, scene.time + passed);
         }
         let end = radii[FRAMES - 1] - (1.0 - root);
-        assert!((0.0..0.2).contains(&end), "{tracer}: the film ends {end} M above the inner horizon");
+        assert!((0.0..0.2).contains(&end), "{tracer}, {tables:?}: the film ends {end} M above the inner horizon");
         for seam in [3.0, 1.0 + root] {
             let at = radii.iter().position(|r| *r < seam).expect("the film passes it");
             let around = |low: usize, high: usize| jolts[low..high].iter().copied().fold(0.0, f64::max);
             // jolts[k] is that of the frames k, k + 1 and k + 2.
             let (here, beside) = (around(at - 2, at), around(at - 12, at - 4).max(around(at + 2, at + 10)));
-            println!("{tracer}: at r = {seam} jolts {here:.1e}, beside it {beside:.1e}");
-            assert!(here <= 1.2 * beside, "{tracer}, r = {seam}: {here:e}, beside {beside:e}: {jolts:?}");
+            println!("{tracer}, {tables:?}: at r = {seam} jolts {here:.1e}, beside it {beside:.1e}");
+            assert!(here <= 1.2 * beside, "{tracer}, {tables:?}, r = {seam}: {here:e}, beside {beside:e}: {jolts:?}");
         }
     }
 }
@@ -102,6 +103,9 @@ fn random_cameras_inside_give_numbers() {
             if has_matter {
                 scene.volumes.push(Volume::default());
                 scene.hot_spots.push(HotSpot::default());
+            }
+            if runs_all() {
+                scene.quality.lens_tables = random.pick(&[LensTables::Never, LensTables::Never, LensTables::Always]);
             }
             renderer.scene = scene;
             let side = if runs_all() { 4 } else { 8 };

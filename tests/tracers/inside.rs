@@ -7,7 +7,7 @@ use crate::frames::{both, cpu, floats, gpu, picture};
 use crate::random::runs_all;
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, Chart, Disk, HotSpot, Motion, Scene, Sky, View, Volume, VolumeResolution};
+use bhr::scene::{Camera, Chart, Disk, HotSpot, LensTables, Motion, Scene, Sky, View, Volume, VolumeResolution};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -103,6 +103,56 @@ fn the_tracers_agree() {
         assert!(lit > count / 20, "spin {spin}, {place:?}, {name}: {lit} pixels are lit");
         // Stars and grid lines move by a hair.
         assert!(beyond * 1000 <= count * 4 && far * 1000 <= count, "spin {spin}, {place:?}, {name}: {beyond}, {far}");
+    }
+}
+
+/// Pictures of the sky and of thin disks by tables of the lens: both tracers show the same, as they do ray by ray.
+#[test]
+fn tables_show_what_rays_do() {
+    let (mut cpu, mut gpu) = (cpu(), gpu());
+    let shown: [(&str, Set); 3] = [("nothing", |scene| scene.disk = None), matter()[0], matter()[1]];
+    for (i, (spin, place, motion)) in
+        places().into_iter().enumerate().filter(|(_, (.., motion))| *motion != Motion::Static)
+    {
+        for (kind, (name, shines)) in shown.into_iter().enumerate() {
+            if !runs_all() && (i > 8 || i % 3 != kind) {
+                continue;
+            }
+            let seen_by = |renderer: &mut Renderer, tables: LensTables| {
+                let set = |scene: &mut Scene| {
+                    (scene.hole.spin, scene.camera, scene.quality.lens_tables) = (spin, camera(motion, place), tables);
+                    shines(scene);
+                    // The grid's equator lies beside the image of the disk's far edge, where tables and rays refine
+                    // other pixels.
+                    scene.sky.flags = Sky::STARS;
+                };
+                seen(renderer, PixelFormat::Rgba8Srgb, &set)
+            };
+            let traced = seen_by(&mut cpu, LensTables::Never);
+            let steps = cpu.stats().steps;
+            let pictures = [&mut cpu, &mut gpu].map(|renderer| {
+                let picture = seen_by(renderer, LensTables::Always);
+                (picture, renderer.stats().lens_tables, renderer.stats().steps)
+            });
+            let off = |a: &[u8], b: &[u8], limit: u8| {
+                let differs = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > limit);
+                a.chunks_exact(4).zip(b.chunks_exact(4)).filter(differs).count()
+            };
+            let count = traced.len() / 4;
+            let [(on_cpu, ..), (on_gpu, ..)] = &pictures;
+            let found = [(on_cpu, &traced), (on_cpu, on_gpu)].map(|(a, b)| [off(a, b, 2), off(a, b, 24)]);
+            let told = pictures.each_ref().map(|(_, made, steps)| (*made, *steps));
+            println!("spin {spin}, {place:?}, {motion:?}, {name}: {found:?} of {count}; {told:?}, traced {steps}");
+            // Where a disk's image is as narrow as a pixel, tables and rays refine other pixels.
+            for ([beyond, far], [most, most_far]) in found.into_iter().zip([[10, 3], [5, 1]]) {
+                let few = beyond * 1000 <= count * most && far * 1000 <= count * most_far;
+                assert!(few, "spin {spin}, {place:?}, {name}: {found:?}");
+            }
+            // Most rays are looked up, in tables that were made for the picture.
+            for (made, integrated) in told {
+                assert!(made == 1 && 2 * integrated < steps, "spin {spin}, {place:?}, {name}: {told:?}, {steps}");
+            }
+        }
     }
 }
 

@@ -143,6 +143,7 @@ fn all() -> Vec<(&'static str, Value)> {
         KERR_TOLERANCE: f32 = kerr::TOLERANCE;
         KERR_BEYOND: f32 = kerr::BEYOND_INFINITY;
         KERR_INWARD: f32 = kerr::INWARD;
+        KERR_LEAVES_DORAN: f32 = kerr::LEAVES_DORAN;
 
         VIEW_REDSHIFT: u32 = View::Redshift;
         VIEW_ORDER: u32 = View::Order;

@@ -338,6 +338,8 @@ variant! {
         PATTERN pub pattern: bool,
         /// The camera moves against the local frame.
         MOVING pub moving: bool,
+        /// As in [`TraceVariant`].
+        RAIN pub rain: bool,
         ;
         pub maker: RecordMaker,
     }

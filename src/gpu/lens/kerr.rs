@@ -64,6 +64,7 @@ struct KerrKey {
     place: [f64; 3],
     /// Azimuth.
     e_phi: DVec3,
+    rain: bool,
     orders: u32,
     pattern: bool,
     delay: bool,
@@ -75,6 +76,7 @@ impl KerrKey {
             a: frame.a,
             place: [frame.r, frame.sin, frame.cos],
             e_phi: frame.e_phi,
+            rain: frame.rain,
             orders: contents.orders,
             pattern: contents.pattern,
             delay: contents.delay,
@@ -166,7 +168,11 @@ impl KerrTables {
         let texture = wgpu::BindingResource::TextureView;
         let lens = resources.uniform.as_entire_binding();
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
-        let choices = [(Choice::DELAY, contents.delay.into()), (Choice::PATTERN, contents.pattern.into())];
+        let choices = [
+            (Choice::DELAY, contents.delay.into()),
+            (Choice::PATTERN, contents.pattern.into()),
+            (Choice::RAIN, frame.rain.into()),
+        ];
         let trace_nodes = match traced {
             true => None,
             false => Some(kernels.get(KernelKey::new(KernelKind::KerrNodes, &[&choices]))?.stage(device, &[&shared])?),

@@ -9,7 +9,7 @@ use super::{Group, ROUNDING, TRANSCENDENTAL, twin};
 use crate::gpu::kernel::sizes::{KERR_COLUMNS, KERR_PER_OCTAVE};
 use crate::physics::integrator::nystrom_step;
 use crate::physics::lens::critical::{CRITICAL_NODES, radial_potential};
-use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution, regular_delay};
+use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution, delay_from, delay_to, divergent_delay};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -231,16 +231,33 @@ pub fn nodes() -> Group {
     let twins = vec![
         twin(
             file,
-            "regular_delay beyond_energy",
-            "out1(regular_delay(ray_constants(), ray_state(13u), ray_state(23u)));",
+            "delay_from delay_to beyond_energy",
+            "let c = ray_constants(); out1(delay_from(c, ray_state(23u)) + delay_to(c, ray_state(13u)));",
             push_later,
             |i, o| {
                 let (c, observer, there) = (constants(i), state(i, STATE), state(i, STATE + 10));
-                o.near(regular_delay(&c, &observer, &there), 1.0 + c.k * (observer.u + there.u) + there.delay.abs());
+                o.near(
+                    delay_from(&c, &there) + delay_to(&observer),
+                    1.0 + c.k * (observer.u + there.u) + there.delay.abs(),
+                );
             },
             TRANSCENDENTAL,
         )
         .with(&spinning),
+        twin(
+            "lens/kerr",
+            "divergent_delay",
+            "out1(divergent_delay(in1(0u), in1(1u)));",
+            |i| {
+                i.log(1e-3, 2.0);
+                i.log(1e-5, 2.0);
+            },
+            |i, o| {
+                let [u, observer] = [i.x(0), i.x(1)];
+                o.near(divergent_delay(u, observer), 1.0 / u + 1.0 / observer + 40.0);
+            },
+            TRANSCENDENTAL,
+        ),
         twin(
             file,
             "beyond_energy",

@@ -151,14 +151,15 @@ impl Planner<'_> {
             Some(_) if hidden => 1,
             Some(_) => settings.max_crossings as u32,
         };
+        let variant = TraceVariant {
+            azimuth: pattern,
+            matter: matter_variant(&emitters.volumes, scene),
+            projection,
+            ..variant(scene, settings, Some(&observer))
+        };
         RecordSetup {
-            source: RecordSource { delay, pattern, moving, maker },
-            variant: TraceVariant {
-                azimuth: pattern,
-                matter: matter_variant(&emitters.volumes, scene),
-                projection,
-                ..variant(scene, settings, Some(&observer))
-            },
+            source: RecordSource { delay, pattern, moving, rain: variant.rain, maker },
+            variant,
             half,
             crossings,
             // wgpu makes no array texture of one layer on GL.

@@ -22,8 +22,8 @@ const MOST_KERNELS: u64 = 400_000_000_000;
 const LEFT: [(Choice, u32); 17] = [
     (Choice::METHOD, NODES | TABLE_RAYS),
     (Choice::SPINNING, NODES | KERR | DEFERRED),
-    (Choice::STEP_LIMIT, TABLE_RAYS),
-    (Choice::RAIN, SPIN_0 | KERR | NODES | ENDS | COLUMNS | TABLE_RAYS),
+    (Choice::STEP_LIMIT, TABLE_RAYS | NODES),
+    (Choice::RAIN, SPIN_0 | ENDS | COLUMNS),
     (Choice::KEEPS_RECORD, PIXELS),
     (Choice::MOVING, PIXELS | (TRACED & !EXPORT)),
     (Choice::PARTS, RAYS | TABLE_RAYS),

@@ -176,20 +176,35 @@ impl KerrLookup<'_> {
     }
 
     /// The crossings in the disk's range, in the ray's order.
+    #[cfg(test)]
     pub fn crossings(&self) -> impl Iterator<Item = Crossing> {
+        self.crossings_and_beyond().filter(|crossing| self.is_reached(crossing))
+    }
+
+    /// The crossings in the disk's range, and those farther out, past infinity as well, of rays beside such; in the
+    /// ray's order.
+    pub fn crossings_and_beyond(&self) -> impl Iterator<Item = Crossing> {
         let possible = (0..self.grid.wanted.orders).filter(|order| self.flags >> order & 1 != 0);
-        possible.filter_map(|order| self.crossing(order))
+        possible.filter_map(|order| self.crossing_or_beyond(order))
     }
 
     /// The crossing of that order, good or not. `None`: not in the disk's range.
     pub fn crossing(&self, order: usize) -> Option<Crossing> {
+        self.crossing_or_beyond(order).filter(|crossing| self.is_reached(crossing))
+    }
+
+    fn is_reached(&self, crossing: &Crossing) -> bool {
+        crossing.image.u >= self.grid.wanted.reach(crossing.order as usize)[0]
+    }
+
+    /// `None`: nearer than the disk's range, or missing.
+    fn crossing_or_beyond(&self, order: usize) -> Option<Crossing> {
         let wanted = &self.grid.wanted;
         let at = self.interpolate(1 + if wanted.pattern { order } else { order / PER_QUAD });
         let lane = if wanted.pattern { 0 } else { order % PER_QUAD };
         let inverse_side = 1.0 / self.place.side;
         let u = f64::from(at.value[lane]) * inverse_side;
-        let [far, near] = wanted.reach(order);
-        if !(u >= far && u <= near) {
+        if !(u <= wanted.plane_u[1] && f64::from(at.value[lane].abs()) < 0.5 * NO_CROSSING) {
             return None;
         }
         let order = order as u32;

@@ -2,58 +2,100 @@
 //! The content of a node of a Kerr lens table, by integration of its ray.
 
 use super::grid::*;
-use crate::physics::geodesic::{Constants, State};
-use crate::physics::integrator::{Quintic, nystrom_step, step_limit};
+use crate::physics::geodesic::{Clock, Constants, State};
+use crate::physics::integrator::{Quintic, held_inside, nystrom_step, step_limit};
 use crate::physics::trace::{CROSSINGS_KEPT, Settings, land};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 
-/// The delay less `divergent_delay`, from the state at a crossing: with `Constants::delay`,
-/// 2 (1 + u') ln(|u| / u_observer) - (1 + u') / u + the integral, and (1 + u') / u from u'^2 = P(u) without
-/// cancellation.
-pub(crate) fn regular_delay(c: &Constants, observer: &State, there: &State) -> f64 {
+/// The delay less `divergent_delay`, from the state at a crossing to `observer`, is `delay_from` the crossing +
+/// `delay_to` the observer: with `Constants::delay`, 2 (1 + u') ln(|u| / u_observer) - (1 + u') / u + the integral, and
+/// (1 + u') / u from u'^2 = P(u) without cancellation.
+pub(crate) fn delay_from(c: &Constants, there: &State) -> f64 {
     let (u, du) = (there.u, there.du);
     let below = u * (c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter)));
     let ratio = if du < 0.0 { -below / (1.0 - du) } else { (1.0 + du) / u };
     let logarithm = (u / c.u_observer).abs().max(f64::MIN_POSITIVE).ln();
-    2.0 * ratio * u * logarithm - ratio + (observer.du - 1.0) / observer.u + there.delay - observer.delay
+    2.0 * ratio * u * logarithm - ratio + there.delay
+}
+
+pub(crate) fn delay_to(observer: &State) -> f64 {
+    (observer.du - 1.0) / observer.u - observer.delay
 }
 
 /// One node's ray on its way.
 pub(super) struct NodeRay<'a> {
     wanted: &'a Crossings,
+    settings: Settings,
     capture_u: f64,
+    /// S.
     side: f64,
+    /// Above 0 above the plane, below 0 below it; a start in the plane counts for where it leads, as in `trace`.
+    height: f64,
+    /// `delay_to` the observer.
+    arrival: f64,
     sky: Option<DVec3>,
     crossings: ArrayVec<[f64; PER_CROSSING], CROSSINGS_KEPT>,
 }
 
 impl<'a> NodeRay<'a> {
-    fn new(wanted: &'a Crossings, capture_u: f64, side: f64) -> Self {
-        Self { wanted, capture_u, side, sky: None, crossings: ArrayVec::new() }
+    fn new(wanted: &'a Crossings, capture_u: f64, side: f64, c: &Constants, start: &State) -> Self {
+        let settings = Settings { step: STEP, delay: wanted.pattern, ..Settings::exact(c.a) };
+        let height = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
+        let (sky, crossings) = (None, ArrayVec::new());
+        Self { wanted, settings, capture_u, side, height, arrival: delay_to(start), sky, crossings }
     }
 
-    fn follow(&mut self, c: &Constants, start: &State) {
-        let settings = Settings { step: STEP, delay: self.wanted.pattern, ..Settings::exact(c.a) };
+    /// Follows the ray of a rain observer until it is far enough outside the horizon for Boyer and Lindquist's chart:
+    /// the state there in that chart. `None` where it does not come so far.
+    fn leave_dorans_chart(&mut self, c: &Constants, start: &State) -> Option<(Constants, State)> {
+        let u_plus = 1.0 / c.r_plus;
         let mut state = *start;
-        // A start in the plane is no crossing, as in `trace`.
-        let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
+        for _ in 0..MAX_STEPS {
+            if state.u < LEAVES_DORAN * self.capture_u {
+                let chart = Constants { clock: Clock::Coordinate, offsets: None, ..*c };
+                let drag = c.matter_azimuth(&state) - state.n.y.atan2(state.n.x);
+                let there = State { drag, delay: 0.0, ..state };
+                if self.settings.delay {
+                    self.arrival = c.retardation(start, &state);
+                    if c.is_unit_energy() {
+                        self.arrival -= divergent_delay(state.u, c.u_observer) + delay_from(&chart, &there);
+                    }
+                }
+                return Some((chart, there));
+            }
+            // As in `trace`.
+            let most = STEP / if state.u >= u_plus { c.turn_rate() } else { c.scale };
+            let h = most.min(step_limit(c, &state, STEP));
+            let next = held_inside(c, nystrom_step(c, &state, h, self.settings.delay));
+            if self.height * next.n.z < 0.0 {
+                self.cross(c, (&state, &next, h), false);
+            }
+            if next.du > 0.0 && u_plus - next.u < 1e-6 * u_plus {
+                return None;
+            }
+            state = next;
+        }
+        None
+    }
+
+    /// Follows the ray from `state`, in the chart of Boyer and Lindquist, to its end.
+    fn follow(&mut self, c: &Constants, mut state: State) {
         let mut beyond = 0.0;
         for _ in 0..MAX_STEPS {
             let inside = state.u >= self.capture_u;
             // Beyond `capture_u` only u and N go on, which pass the horizon evenly.
             let h = if inside { STEP / c.scale } else { (STEP / c.scale).min(step_limit(c, &state, STEP)) };
-            let mut next = nystrom_step(c, &state, h, settings.delay);
+            let mut next = nystrom_step(c, &state, h, self.settings.delay);
             if inside {
                 (next.drag, next.delay) = (state.drag, state.delay);
             }
-            if side * next.n.z < 0.0 {
-                side = next.n.z;
-                self.cross(c, start, &settings, (&state, &next, h));
+            if self.height * next.n.z < 0.0 {
+                self.cross(c, (&state, &next, h), true);
             }
             if next.u <= 0.0 && self.sky.is_none() {
                 let guess = h * Quintic::of_u(c, &state, &next, h).root();
-                let no_delay = Settings { delay: false, ..settings };
+                let no_delay = Settings { delay: false, ..self.settings };
                 self.sky = Some(land(c, &no_delay, &state, guess, SLACK, |s| (s.u, s.du)).0.chart_direction());
             }
             if next.u <= 0.0 {
@@ -69,30 +111,30 @@ impl<'a> NodeRay<'a> {
         }
     }
 
-    fn cross(&mut self, c: &Constants, observer: &State, settings: &Settings, (from, to, h): (&State, &State, f64)) {
+    /// Keeps the crossing within a step; `placed`: with its azimuth and delay, which in Doran's chart no disk needs.
+    fn cross(&mut self, c: &Constants, (from, to, h): (&State, &State, f64), placed: bool) {
+        self.height = to.n.z;
         if self.crossings.len() >= self.wanted.orders {
             return;
         }
         let guess = h * Quintic::of_n_z(c, from, to, h).root();
-        let (mut state, _) = land(c, settings, from, guess, SLACK, |s| (s.n.z, s.dn.z));
+        let (mut state, _) = land(c, &self.settings, from, guess, SLACK, |s| (s.n.z, s.dn.z));
+        if !placed {
+            self.crossings.push([state.u * self.side, 0.0, 0.0, 0.0]);
+            return;
+        }
         if from.u >= self.capture_u {
             (state.drag, state.delay) = (from.drag, from.delay);
         }
-        let delay = if self.wanted.pattern { regular_delay(c, observer, &state) } else { 0.0 };
+        // Rays of so little E that it is not scaled to 1 have their delay up to infinity: what is left is 0 beyond.
+        let delay = match (self.wanted.pattern, c.is_unit_energy()) {
+            (false, _) => 0.0,
+            (true, true) => delay_from(c, &state) + self.arrival,
+            (true, false) if state.u > 0.0 => state.delay + self.arrival - divergent_delay(state.u, c.u_observer),
+            (true, false) => 0.0,
+        };
         let direction = state.chart_direction();
         self.crossings.push([state.u * self.side, direction.x, direction.y, delay]);
-    }
-
-    /// The node's numbers; crossings that did not come are marked by u.
-    fn finish(self) -> Node {
-        let mut node = Node::new();
-        node.extend(self.sky.unwrap_or(DVec3::ZERO).to_array());
-        let none = if self.sky.is_some() { -NO_CROSSING } else { NO_CROSSING };
-        for order in 0..self.wanted.orders {
-            let crossing = self.crossings.get(order).copied().unwrap_or([none, 0.0, 0.0, 0.0]);
-            node.extend(crossing.into_iter().take(if self.wanted.pattern { PER_CROSSING } else { 1 }));
-        }
-        node
     }
 }
 
@@ -100,10 +142,28 @@ impl Grid {
     /// The content of a node, by integration of its ray.
     pub fn node(&self, branch: Branch, column: usize, row: usize) -> Node {
         let n = self.direction(branch, column, row as f64);
-        let mut ray = NodeRay::new(&self.wanted, self.capture_u, side(n));
-        if let Some((c, start)) = self.frame.start(n) {
-            ray.follow(&c, &start);
+        // Captured rays leave nothing to keep but crossings.
+        let start = self.frame.start(n).filter(|_| branch == Branch::Outer || self.wanted.orders > 0);
+        let Some((c, start)) = start else { return self.wanted.node_of(None, &[]) };
+        let mut ray = NodeRay::new(&self.wanted, self.capture_u, side(n), &c, &start);
+        let outside = if self.frame.rain { ray.leave_dorans_chart(&c, &start) } else { Some((c, start)) };
+        if let Some((c, state)) = outside {
+            ray.follow(&c, state);
         }
-        ray.finish()
+        self.wanted.node_of(ray.sky, &ray.crossings)
+    }
+}
+
+impl Crossings {
+    /// A node's numbers; crossings that did not come are marked by u.
+    fn node_of(&self, sky: Option<DVec3>, crossings: &[[f64; PER_CROSSING]]) -> Node {
+        let mut node = Node::new();
+        node.extend(sky.unwrap_or(DVec3::ZERO).to_array());
+        let none = if sky.is_some() { -NO_CROSSING } else { NO_CROSSING };
+        for order in 0..self.orders {
+            let crossing = crossings.get(order).copied().unwrap_or([none, 0.0, 0.0, 0.0]);
+            node.extend(crossing.into_iter().take(if self.pattern { PER_CROSSING } else { 1 }));
+        }
+        node
     }
 }
