@@ -90,7 +90,11 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
                     there.drag = state.drag;
                     there.delay = state.delay;
                 }
-                store_crossing(c, there, arrival, outside);
+                if outside {
+                    store_crossing(c, there, arrival, select(there.u, state.u, inside));
+                } else {
+                    store_rain_crossing(c, begin.state, there);
+                }
             }
         }
         if next.u <= 0.0 {
@@ -146,18 +150,31 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
 }
 
-// With its place if the ray is outside; farther in no disk is.
-fn store_crossing(c: Constants, there: State, arrival: f32, outside: bool) {
+// `turn_u`: 1/r where the drag was last integrated.
+fn store_crossing(c: Constants, there: State, arrival: f32, turn_u: f32) {
     var at = vec4<f32>(there.u, 0.0, 0.0, 0.0);
-    if PATTERN && outside {
-        let direction = chart_direction(there.n, there.drag - chart_turn(c, there.u));
+    if PATTERN {
+        let direction = chart_direction(there.n, there.drag - chart_turn(c, turn_u));
         at = vec4<f32>(there.u, direction.xy, select(0.0, crossing_delay(c, there, arrival), DELAY));
     }
     store_next(at);
 }
 
-// delay_from of rays whose delay is integrated by parts. Those of so little E that it is not have it up to infinity:
-// what is left is 0 beyond.
+// A crossing of a ray that is in Doran's chart still; within the horizon, where no disk is, without azimuth and delay.
+fn store_rain_crossing(c: Constants, observer: State, there: State) {
+    var at = vec4<f32>(there.u, 0.0, 0.0, 0.0);
+    if PATTERN && there.u * c.r_plus * (1.0 + 1e-5) <= 1.0 {
+        let offsets = chart_offsets(c, there.u);
+        let direction = chart_direction(there.n, there.drag - offsets.x);
+        let delay = retardation(c, observer.u, observer.du, there.u, there.du, there.delay - observer.delay)
+            + offsets.y - divergent_delay(there.u, c.u_observer);
+        at = vec4<f32>(there.u, direction.xy, select(0.0, delay, DELAY));
+    }
+    store_next(at);
+}
+
+// The delay from a crossing to the observer less divergent_delay. Rays with too little energy to integrate the delay by
+// parts have no such delay past infinity: 0 stands for it.
 fn crossing_delay(c: Constants, there: State, arrival: f32) -> f32 {
     if !RAIN || delay_by_parts(c) {
         return delay_from(c, there) + arrival;

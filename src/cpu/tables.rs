@@ -35,6 +35,8 @@ struct KerrKey {
     r: f64,
     /// Unit vector from the hole to the observer.
     e_r: DVec3,
+    /// Azimuth.
+    e_phi: DVec3,
     rain: bool,
     wanted: Crossings,
 }
@@ -78,7 +80,7 @@ impl LensCache {
     }
 
     fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Result<Option<&KerrLens>> {
-        let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, rain: frame.rain, wanted };
+        let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, e_phi: frame.e_phi, rain: frame.rain, wanted };
         if !self.kerr.find(&key) {
             // The old tables go first, because they are large.
             drop(self.kerr.make_room(&key));

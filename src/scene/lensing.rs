@@ -24,6 +24,10 @@ impl KerrThreshold {
     pub const CPU: Self = Self(140_000);
 }
 
+/// |cot theta| of a rain observer below which a frame with a thin disk is traced: the disk's images are narrower than
+/// pixels there, and tables would integrate most rays beside them, with other footprints on each tracer.
+const RAIN_LAYER: f64 = 0.03;
+
 /// Orders of crossings that tables within 32 MB hold with azimuth and delay (without: four times as many): for all
 /// observers, and for those no farther than KERR_NEAR, M.
 const KERR_ORDERS: usize = 3;
@@ -72,7 +76,8 @@ impl Scene {
         let settings = self.pixel_settings_of(&emitters);
         let layers = settings.max_crossings.div_ceil(if needs.places { 1 } else { 4 });
         let fits = layers <= if frame.r <= KERR_NEAR { KERR_ORDERS_NEAR } else { KERR_ORDERS };
-        if frame.a != 0.0 && critical::reaches(frame) && fits && pays(kerr_threshold.0) {
+        let edge_on = frame.rain && emitters.plane_u().is_some() && frame.cos.abs() < RAIN_LAYER * frame.sin;
+        if frame.a != 0.0 && critical::reaches(frame) && fits && !edge_on && pays(kerr_threshold.0) {
             return Lensing::Kerr;
         }
         Lensing::Traced

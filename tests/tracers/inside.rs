@@ -115,7 +115,9 @@ fn tables_show_what_rays_do() {
         places().into_iter().enumerate().filter(|(_, (.., motion))| *motion != Motion::Static)
     {
         for (kind, (name, shines)) in shown.into_iter().enumerate() {
-            if !runs_all() && (i > 8 || i % 3 != kind) {
+            // From within the plane disks are traced.
+            let edge_on = kind > 0 && place[1].cos().abs() < 0.03;
+            if edge_on || (!runs_all() && (i > 8 || i % 3 != kind)) {
                 continue;
             }
             let seen_by = |renderer: &mut Renderer, tables: LensTables| {

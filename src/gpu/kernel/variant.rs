@@ -338,7 +338,7 @@ variant! {
         PATTERN pub pattern: bool,
         /// The camera moves against the local frame.
         MOVING pub moving: bool,
-        /// As in [`TraceVariant`].
+        /// Doran's chart: observers in the rain frame of a spinning hole.
         RAIN pub rain: bool,
         ;
         pub maker: RecordMaker,

@@ -32,8 +32,8 @@ pub(super) const LAYER_SHARE: f64 = 0.5;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without
 /// one.
 pub(crate) const INWARD: f64 = 1.5;
-/// Rays of rain observers go on in the chart of Boyer and Lindquist, as all others do, where 1/r is less than this part of
-/// `Grid::capture_u`: outside the photon orbit or next to it, inside of which no disk is.
+/// The part of `Grid::capture_u` below which rays of rain observers go on in the chart of Boyer and Lindquist, as all
+/// others do.
 pub(crate) const LEAVES_DORAN: f64 = 0.95;
 /// The U that marks a missing crossing: positive where the ray is captured before, negative where it has passed
 /// infinity.

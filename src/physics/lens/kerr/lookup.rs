@@ -27,7 +27,7 @@ pub struct Sky {
     by_row: DVec3,
 }
 
-/// A crossing of the equatorial plane in the disk's range.
+/// A crossing of the equatorial plane. Farther out than the disk its azimuth and delay mean nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing {
     pub order: u32,

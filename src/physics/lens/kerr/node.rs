@@ -4,7 +4,7 @@
 use super::grid::*;
 use crate::physics::geodesic::{Clock, Constants, State};
 use crate::physics::integrator::{Quintic, held_inside, nystrom_step, step_limit};
-use crate::physics::trace::{CROSSINGS_KEPT, Settings, land};
+use crate::physics::trace::{CROSSINGS_KEPT, Settings, innermost_u, land};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 
@@ -64,12 +64,12 @@ impl<'a> NodeRay<'a> {
                 }
                 return Some((chart, there));
             }
-            // As in `trace`.
+            // Steps are those of `trace`.
             let most = STEP / if state.u >= u_plus { c.turn_rate() } else { c.scale };
             let h = most.min(step_limit(c, &state, STEP));
             let next = held_inside(c, nystrom_step(c, &state, h, self.settings.delay));
             if self.height * next.n.z < 0.0 {
-                self.cross(c, (&state, &next, h), false);
+                self.cross(c, (&state, &next, h), Some(start));
             }
             if next.du > 0.0 && u_plus - next.u < 1e-6 * u_plus {
                 return None;
@@ -91,7 +91,7 @@ impl<'a> NodeRay<'a> {
                 (next.drag, next.delay) = (state.drag, state.delay);
             }
             if self.height * next.n.z < 0.0 {
-                self.cross(c, (&state, &next, h), true);
+                self.cross(c, (&state, &next, h), None);
             }
             if next.u <= 0.0 && self.sky.is_none() {
                 let guess = h * Quintic::of_u(c, &state, &next, h).root();
@@ -111,22 +111,30 @@ impl<'a> NodeRay<'a> {
         }
     }
 
-    /// Keeps the crossing within a step; `placed`: with its azimuth and delay, which in Doran's chart no disk needs.
-    fn cross(&mut self, c: &Constants, (from, to, h): (&State, &State, f64), placed: bool) {
+    /// Keeps the crossing within a step. `rain`: the state of the rain observer whose light is still in Doran's chart;
+    /// crossings within the horizon, where no disk is, have no azimuth and delay then.
+    fn cross(&mut self, c: &Constants, (from, to, h): (&State, &State, f64), rain: Option<&State>) {
         self.height = to.n.z;
         if self.crossings.len() >= self.wanted.orders {
             return;
         }
         let guess = h * Quintic::of_n_z(c, from, to, h).root();
         let (mut state, _) = land(c, &self.settings, from, guess, SLACK, |s| (s.n.z, s.dn.z));
-        if !placed {
-            self.crossings.push([state.u * self.side, 0.0, 0.0, 0.0]);
+        if let Some(observer) = rain {
+            let mut crossing = [state.u * self.side, 0.0, 0.0, 0.0];
+            if state.u <= innermost_u(c.r_plus) {
+                let (sin, cos) = c.matter_azimuth(&state).sin_cos();
+                let delay = c.retardation(observer, &state) - divergent_delay(state.u, c.u_observer);
+                crossing = [crossing[0], cos, sin, if self.wanted.pattern { delay } else { 0.0 }];
+            }
+            self.crossings.push(crossing);
             return;
         }
         if from.u >= self.capture_u {
             (state.drag, state.delay) = (from.drag, from.delay);
         }
-        // Rays of so little E that it is not scaled to 1 have their delay up to infinity: what is left is 0 beyond.
+        // Rays with too little energy to integrate the delay by parts have no such delay past infinity: 0 stands for
+        // it.
         let delay = match (self.wanted.pattern, c.is_unit_energy()) {
             (false, _) => 0.0,
             (true, true) => delay_from(c, &state) + self.arrival,

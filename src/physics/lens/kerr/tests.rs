@@ -8,7 +8,7 @@ use crate::physics::geodesic::RAIN_CLOCK_RADIUS;
 use crate::physics::lens::critical::*;
 use crate::physics::metric::chart;
 use crate::physics::observer::LocalFrame;
-use crate::physics::orbit::{horizon_inner, isco, redshift};
+use crate::physics::orbit::{horizon_inner, horizon_outer, isco, redshift};
 use crate::physics::trace::{Fate, Settings, trace};
 use glam::{DVec3, Vec4};
 use std::collections::HashMap;
@@ -302,16 +302,17 @@ fn table_agrees_with_integration() {
     assert!(quantile(&mut m.radius, 0.999) < 1e-5 && quantile(&mut m.redshift, 0.999) < 1e-5);
 }
 
-/// The same for rain observers, from the inner horizon to where scenes leave Doran's chart. (Stretches below 1 count
-/// as 1, and inside most of the sky is drawn together.)
+/// Tables of rain observers agree with integration, from the inner horizon to where scenes leave Doran's chart, half of
+/// them beside the outer horizon. (Stretches below 1 count as 1, and inside most of the sky is drawn together.)
 #[test]
 fn rain_tables_agree_with_integration() {
     let mut m = Measured::default();
-    for i in 0..40 {
+    for i in 0..80 {
         let mut random = Random(100 + i as u64);
-        let a = SPINS[i % SPINS.len()];
+        let a = SPINS[i / 2 % SPINS.len()];
         let inner = horizon_inner(a) * (1.0 + 1e-6);
-        let r = inner + (RAIN_CLOCK_RADIUS - inner) * random.next();
+        let far = if i % 2 == 0 { RAIN_CLOCK_RADIUS } else { 1.1 * horizon_outer(a) };
+        let r = inner + (far - inner) * random.next();
         let frame = LocalFrame::rain(a, chart(r, PI * random.next(), TAU * random.next())).unwrap();
         let mut lazy = LazyTable::new(&frame, Resolution::COARSE, wanted(a, true)).unwrap();
         let mut here = compare(&mut lazy, 250, &mut random);
@@ -321,8 +322,10 @@ fn rain_tables_agree_with_integration() {
     m.report("rain");
     println!("{}", m.worst);
     assert!(m.about_direct * 12 < m.about, "{} of {} direct", m.about_direct, m.about);
-    assert!(m.radius.len() > 2000 && m.sky.len() > 3000);
+    assert!(m.radius.len() > 4000 && m.sky.len() > 6000);
     assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
+    assert!(quantile(&mut m.radius, 0.99) < 1e-5 && quantile(&mut m.redshift, 0.99) < 2e-5);
+    assert!(quantile(&mut m.azimuth, 0.99) < 3e-5 && quantile(&mut m.delay, 0.99) < 3e-5);
     assert!(quantile(&mut m.sky, 0.99) < 0.03 && quantile(&mut m.sky, 1.0) < 0.1);
     assert!(quantile(&mut m.radius, 1.0) < 1e-4 && quantile(&mut m.redshift, 1.0) < 2e-4);
     assert!(quantile(&mut m.azimuth, 1.0) < 3e-4 && quantile(&mut m.delay, 1.0) < 5e-4);
