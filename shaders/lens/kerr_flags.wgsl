@@ -152,7 +152,9 @@ fn pattern_is_good(p: Patch) -> bool {
     // d ph = Omega dt, Omega = r^(-3/2) (Kepler).
     let u = clamp(p.high.x, frame.plane_u.x, frame.plane_u.y);
     let turn = u * sqrt(u);
-    return length(p.error.yz) <= KERR_PATTERN_TOLERANCE * (1.0 + critical * azimuth_stretch)
+    // Crossings in Doran's chart have no place (kerr_nodes.wgsl).
+    let placed = any(p.low.yz != vec2<f32>(0.0)) || any(p.high.yz != vec2<f32>(0.0));
+    return placed && length(p.error.yz) <= KERR_PATTERN_TOLERANCE * (1.0 + critical * azimuth_stretch)
         && turn * p.error.w <= KERR_PATTERN_TOLERANCE * (1.0 + critical * turn * delay_stretch);
 }
 

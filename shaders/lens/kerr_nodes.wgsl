@@ -93,7 +93,8 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
                 if outside {
                     store_crossing(c, there, arrival, select(there.u, state.u, inside));
                 } else {
-                    store_rain_crossing(c, begin.state, there);
+                    // Without a place: cells of such crossings that a disk may have are integrated (kerr_flags.wgsl).
+                    store_next(vec4<f32>(there.u, 0.0, 0.0, 0.0));
                 }
             }
         }
@@ -156,19 +157,6 @@ fn store_crossing(c: Constants, there: State, arrival: f32, turn_u: f32) {
     if PATTERN {
         let direction = chart_direction(there.n, there.drag - chart_turn(c, turn_u));
         at = vec4<f32>(there.u, direction.xy, select(0.0, crossing_delay(c, there, arrival), DELAY));
-    }
-    store_next(at);
-}
-
-// A crossing of a ray that is in Doran's chart still; within the horizon, where no disk is, without azimuth and delay.
-fn store_rain_crossing(c: Constants, observer: State, there: State) {
-    var at = vec4<f32>(there.u, 0.0, 0.0, 0.0);
-    if PATTERN && there.u * c.r_plus * (1.0 + 1e-5) <= 1.0 {
-        let offsets = chart_offsets(c, there.u);
-        let direction = chart_direction(there.n, there.drag - offsets.x);
-        let delay = retardation(c, observer.u, observer.du, there.u, there.du, there.delay - observer.delay)
-            + offsets.y - divergent_delay(there.u, c.u_observer);
-        at = vec4<f32>(there.u, direction.xy, select(0.0, delay, DELAY));
     }
     store_next(at);
 }
