@@ -105,7 +105,7 @@ fn random_cameras_inside_give_numbers() {
                 scene.volumes.push(Volume::default());
                 scene.hot_spots.push(HotSpot::default());
             }
-            // Everyday those that look about from the middle do so by tables.
+            // Everyday the cameras without a disk look their rays up in tables.
             let tables = if runs_all() { random.pick(&[0, 1, 2]) } else { i % looks.len() };
             scene.quality.lens_tables = if tables == 2 { LensTables::Always } else { LensTables::Never };
             renderer.scene = scene;

@@ -122,10 +122,10 @@ impl<'a> NodeRay<'a> {
         let (mut state, _) = land(c, &self.settings, from, guess, SLACK, |s| (s.n.z, s.dn.z));
         if let Some(observer) = rain {
             let mut crossing = [state.u * self.side, 0.0, 0.0, 0.0];
-            if state.u <= innermost_u(c.r_plus) {
+            if self.wanted.pattern && state.u <= innermost_u(c.r_plus) {
                 let (sin, cos) = c.matter_azimuth(&state).sin_cos();
                 let delay = c.retardation(observer, &state) - divergent_delay(state.u, c.u_observer);
-                crossing = [crossing[0], cos, sin, if self.wanted.pattern { delay } else { 0.0 }];
+                crossing = [crossing[0], cos, sin, delay];
             }
             self.crossings.push(crossing);
             return;
