@@ -11,6 +11,7 @@ mod encode;
 mod progress;
 mod open;
 mod look;
+mod map;
 mod order;
 mod video;
 mod pictures;
@@ -162,6 +163,18 @@ fn command() -> Command {
                 .arg(compression()),
         )
         .subcommand(
+            Command::new("map")
+                .about("Writes a picture of the whole sky as a map in blocks, which takes a quarter of the memory")
+                .arg(
+                    Arg::new("picture")
+                        .required(true)
+                        .value_name("PICTURE")
+                        .value_parser(value_parser!(PathBuf))
+                        .help("An equirectangular .png, .exr, .pnm or .ktx2 file"),
+                )
+                .arg(option("out", "FILE", "A .ktx2 file").required(true).value_parser(value_parser!(PathBuf))),
+        )
+        .subcommand(
             Command::new("man")
                 .hide(true)
                 .about("Writes the man pages into a folder, for packages")
@@ -177,6 +190,7 @@ fn run(matches: &ArgMatches) -> Result<(), Ending> {
         Some(("adapters", _)) => look::adapters(),
         Some(("trace", given)) => look::trace(given),
         Some(("join", given)) => join::run(given),
+        Some(("map", given)) => map::run(given),
         Some(("man", given)) => man(given),
         _ => Err(Ending::usage("no command")),
     }

@@ -147,6 +147,9 @@ class Context {
     Result<void> set_sky_map_file(const std::string &path) {
         return detail::call([&] { return bhr_set_sky_map_file(get(), path.c_str()); });
     }
+    Result<void> save_sky_map(const std::string &path) const {
+        return detail::call([&] { return bhr_save_sky_map(get(), path.c_str()); });
+    }
 
     Result<void> set_film(const Film &film) { return set(bhr_set_film, film.c()); }
     /// bhr_get_film.

@@ -146,10 +146,17 @@ def test_skies_come_from_files(ctx, tmp_path):
         assert not np.array_equal(ctx.render(32, 18).array, expected)
         ctx.set_sky_map(path)
         assert np.array_equal(ctx.render(32, 18).array, expected)
+    # In blocks, stripes of one texel are on a line of colours.
+    ctx.save_sky_map(tmp_path / "sky.ktx2")
+    ctx.set_sky_map(tmp_path / "sky.ktx2")
+    assert np.abs(ctx.render(32, 18).array.astype(int) - expected).max() <= 3
+    assert bhr.load(tmp_path / "sky.ktx2").array.shape == stripes.shape
+    with pytest.raises(bhr.Error, match=r"\.ktx2 files"):
+        ctx.save_sky_map(tmp_path / "sky.png")
     with pytest.raises(bhr.FileError, match=r"missing\.jpg"):
         ctx.set_sky_map("missing.jpg")
     (tmp_path / "x.jpg").write_bytes(b"\xff\xd8\xff\xe0\0\x10JFIF\0" + bytes(100))
-    with pytest.raises(bhr.FileError, match=r"x\.jpg.*no PNG, EXR or PNM file"):
+    with pytest.raises(bhr.FileError, match=r"x\.jpg.*no PNG, EXR, PNM or KTX2 file"):
         ctx.set_sky_map(tmp_path / "x.jpg")
     for wrong in [[0, 1]], 7, bhr.Sky():
         with pytest.raises(TypeError, match=f"a sky map is a path, .* not {type(wrong).__name__}"):

@@ -125,7 +125,8 @@ pub unsafe extern "C" fn bhr_get_sky(context: *const BhrContext, sky: *mut BhrSk
 /// from the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). Light is
 /// linear Rec. 709, 8-bit formats are decoded; NaN and negative numbers are 0, alpha is ignored. Pictures of more
 /// than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device
-/// to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. docs/maps.md.
+/// to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device; of files in blocks, which
+/// bhr_save_sky_map writes, 1.4 and 1.4. docs/maps.md.
 /// Errors: INVALID_ARGUMENT for R32F and RGB10A2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *const BhrImage) -> BhrStatus {
@@ -134,7 +135,10 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
         on_context("bhr_set_sky_map", context, |state| {
             state.renderer.scene.sky_map = match equirect.is_null() {
                 true => None,
-                false => Some(Arc::new(SkyMap::new(&image::read(equirect, "equirect")?.pixels.as_image_ref())?)),
+                false => {
+                    let picture = image::read(equirect, "equirect")?;
+                    Some(Arc::new(SkyMap::new(&picture.pixels.as_image_ref())?.into()))
+                }
             };
             (state.renderer.scene.sky_picture, state.files.map) = (None, None);
             Ok(())
@@ -155,6 +159,26 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
             let map = MapFile::load(&path, state.files.map.as_ref())?;
             show_map(state, Some(map));
             Ok(())
+        })
+    }
+}
+
+/// Writes the map that bhr_set_sky_map or bhr_set_sky_map_file gave to a .ktx2 file in blocks of BC6H with all its
+/// levels: a byte and a third for a texel. bhr_set_sky_map_file reads it without work on its texels, and GPUs without
+/// unpacking it; docs/maps.md says to what accuracy. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
+/// without a map, or with one on the GPU (bhr_interop.h); UNSUPPORTED for another ending of the path; IO. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_save_sky_map(context: *const BhrContext, path: *const c_char) -> BhrStatus {
+    // SAFETY: NULL or a C string, by the header's conventions.
+    unsafe {
+        on_context("bhr_save_sky_map", context, |state| {
+            let path = path_of(path)?;
+            let scene = &state.renderer.scene;
+            if scene.sky_picture.is_some() {
+                return Err(Error::state("the sky's map is a target on the GPU, which is not saved"));
+            }
+            let map = scene.sky_map.as_ref().ok_or_else(|| Error::state("there is no sky map"))?;
+            map.save(&path)
         })
     }
 }

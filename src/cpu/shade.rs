@@ -43,7 +43,7 @@ impl<'a> Shader<'a> {
             effects: scene.shown_effects(),
             stars: scene.shows_stars().then_some(stars),
             least_patch: least_patch(lens.mapping.pixel_angle),
-            maps: [milky_way, scene.shown_map().map(|map| &**map)],
+            maps: [milky_way, scene.shown_map().map(|map| map.texels()).transpose()?],
             grid: scene.shows_grid(),
             chart_to_sky: scene.chart_to_sky(),
             transparent,

@@ -49,7 +49,7 @@ impl GpuTracer {
         };
         let raw = instance.request_adapter(&options).await.map_err(none)?;
         let adapter = Adapter::of_host(raw, instance, None).map_err(none)?;
-        let descriptor = device_descriptor(adapter.raw()?);
+        let descriptor = device_descriptor(adapter.raw()?, false);
         let opened = adapter.raw()?.request_device(&descriptor).await.map_err(none)?;
         let device = Device::of(&adapter, descriptor.required_limits, opened);
         in_a_task(|| Self::on(adapter, device)).await

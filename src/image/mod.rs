@@ -8,14 +8,16 @@ pub mod memory;
 pub(crate) mod primaries;
 mod colour_space;
 mod kept;
+pub mod rgb9e5;
+pub mod bc6h;
 mod lut;
 pub mod file;
 
 pub use colour_space::ColourSpace;
 pub use copiers::Copiers;
 pub use file::{
-    Alpha, Attribute, Channels, Effort, Layer, Loaded, Pixels, Values, load, load_text, probe, save, save_layers,
-    save_text,
+    Alpha, Attribute, BlockFile, Channels, Effort, Layer, Loaded, Pixels, Values, load, load_blocks, load_text, probe,
+    save, save_blocks, save_layers, save_text,
 };
 #[cfg(feature = "exr")]
 pub use file::{load_channels, save_channels};

@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::image::{Lut, PixelFormat};
 use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
-use crate::sky::{SkyMap, StarField, StarIndex};
+use crate::sky::{StarField, StarIndex, StoredMap};
 use arrayvec::ArrayVec;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -85,7 +85,7 @@ pub struct Scene {
     pub preset_volume: Option<Volume>,
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
-    pub sky_map: Option<Arc<SkyMap>>,
+    pub sky_map: Option<Arc<StoredMap>>,
     /// A picture on the tracer's device that takes the place of `sky_map`.
     pub sky_picture: Option<SkyPicture>,
     pub film: Film,

@@ -13,7 +13,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
 use crate::physics::plunge::Matter;
 use crate::physics::trace::{self, RayTrace, Settings};
-use crate::sky::SkyMap;
+use crate::sky::StoredMap;
 use std::sync::Arc;
 
 /// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning),
@@ -85,7 +85,7 @@ impl Scene {
     }
 
     /// The host's map, where it is to be seen.
-    pub fn shown_map(&self) -> Option<&Arc<SkyMap>> {
+    pub fn shown_map(&self) -> Option<&Arc<StoredMap>> {
         self.sky_map.as_ref().filter(|_| self.asks_for_map())
     }
 

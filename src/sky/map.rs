@@ -9,6 +9,7 @@
 
 use crate::allocate::{THREAD_ROOM, check_room, filled};
 use crate::error::{Error, Result};
+use crate::image::rgb9e5::{limited, pack, unpack};
 use crate::image::{ImageRef, PixelFormat, file::srgb_to_linear};
 use crate::thread_state::begin_own_thread;
 use parking_lot::Mutex;
@@ -68,6 +69,11 @@ impl SkyMap {
         Ok(growing.done())
     }
 
+    /// A map of levels as [`Self::levels`] has them.
+    pub(super) fn from_levels(levels: Vec<Level>) -> Self {
+        Self { levels }
+    }
+
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
@@ -86,10 +92,7 @@ pub struct GrowingMap {
 impl GrowingMap {
     /// The map of a picture of `size`, not 0, without a row so far. Errors: OUT_OF_MEMORY.
     pub fn new(size: [u32; 2]) -> Result<Self> {
-        let tall = size[0].saturating_mul(4).max(TALL);
-        let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
-        let finest = [size[0].clamp(height, MAX_MAP_SIZE[0]), height];
-        Ok(Self { size, levels: vec![Level::empty(finest)?], rows: 0 })
+        Ok(Self { size, levels: vec![Level::empty(finest_size(size))?], rows: 0 })
     }
 
     /// Makes up to `count` more rows of a level; `row` reads the picture's, the same in each call. Returns whether the
@@ -160,6 +163,13 @@ impl GrowingMap {
     }
 }
 
+/// The size of the finest level of a picture of `size`, not 0.
+pub(super) fn finest_size(size: [u32; 2]) -> [u32; 2] {
+    let tall = size[0].saturating_mul(4).max(TALL);
+    let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
+    [size[0].clamp(height, MAX_MAP_SIZE[0]), height]
+}
+
 impl Level {
     fn empty(size: [u32; 2]) -> Result<Self> {
         Ok(Self { size, texels: filled(size[0] as usize * size[1] as usize, 0, "the texels of a sky map")? })
@@ -169,33 +179,17 @@ impl Level {
     fn fill(&mut self, source: &Source<'_>, rows: std::ops::Range<u32>) -> Result<()> {
         let (size, width) = (self.size, self.size[0] as usize);
         let texels = &mut self.texels[rows.start as usize * width..rows.end as usize * width];
-        // Threads of their own: in a pool, one that waits for a map could come to wait for itself.
-        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-        let threads = cores.min(texels.len() / TEXELS_A_THREAD);
+        let threads = threads_for(texels.len());
         let bands = Mutex::new(texels.chunks_mut(BAND * width).zip((rows.start..).step_by(BAND)));
-        let work = || -> Result<()> {
+        on_threads(threads, &|| {
             let mut scratch = Scratch::new(source.size[0] as usize, width)?;
             loop {
                 let Some((texels, first)) = bands.lock().next() else { return Ok(()) };
                 for (texels, y) in texels.chunks_mut(width).zip(first..) {
-                    scratch.fill_row(source, size, y, texels);
+                    let row = scratch.row_of(&mut |y, out| (source.row)(y, out), source.size[1], size, y);
+                    texels.iter_mut().zip(row).for_each(|(texel, light)| *texel = pack(light.map(|v| v as f32)));
                 }
             }
-        };
-        let own = || {
-            begin_own_thread();
-            drop(work());
-        };
-        std::thread::scope(|scope| {
-            for i in 1..threads {
-                let thread = std::thread::Builder::new().name(format!("bhr-sky-{i}"));
-                // Without memory for a thread, or without a thread, there are fewer: this one is enough.
-                let room = check_room(THREAD_ROOM, "a thread that makes a sky map");
-                if room.is_err() || thread.spawn_scoped(scope, own).is_err() {
-                    break;
-                }
-            }
-            work()
         })
     }
 
@@ -206,8 +200,35 @@ impl Level {
     }
 }
 
+/// How many threads so many texels of a level are worth, at most one a core.
+pub(super) fn threads_for(texels: usize) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    cores.min(texels / TEXELS_A_THREAD)
+}
+
+/// Runs `work` on this thread and beside it on others, so many in all: each takes parts of the whole until none is
+/// left. Threads are of their own: in a pool, one that waits for a map could come to wait for itself. Errors: those of
+/// `work` on this thread, which another that fails leaves its parts to.
+pub(super) fn on_threads(threads: usize, work: &(dyn Fn() -> Result<()> + Sync)) -> Result<()> {
+    let own = || {
+        begin_own_thread();
+        drop(work());
+    };
+    std::thread::scope(|scope| {
+        for i in 1..threads {
+            let thread = std::thread::Builder::new().name(format!("bhr-sky-{i}"));
+            // Without memory for a thread, or without a thread, there are fewer: this one is enough.
+            let room = check_room(THREAD_ROOM, "a thread that makes a sky map");
+            if room.is_err() || thread.spawn_scoped(scope, own).is_err() {
+                break;
+            }
+        }
+        work()
+    })
+}
+
 /// The memory that making a row takes.
-struct Scratch {
+pub(super) struct Scratch {
     /// A row of the source.
     read: Vec<[f32; 3]>,
     /// The mean of its rows.
@@ -233,7 +254,8 @@ fn parts(index: usize, count: usize, source: usize) -> impl Iterator<Item = (usi
 }
 
 impl Scratch {
-    fn new(source_width: usize, width: usize) -> Result<Self> {
+    /// For rows of `width` texels, from rows of a source. Errors: OUT_OF_MEMORY.
+    pub(super) fn new(source_width: usize, width: usize) -> Result<Self> {
         let what = "rows of a sky map";
         Ok(Self {
             read: filled(source_width, [0.0; 3], what)?,
@@ -244,24 +266,28 @@ impl Scratch {
         })
     }
 
-    /// Makes row `y` of a level of `size`.
-    fn fill_row(&mut self, source: &Source<'_>, size: [u32; 2], y: u32, texels: &mut [u32]) {
-        self.gather(source, size[1], y);
+    /// The light of row `y` of a level of `size`, from a source of so many rows that `read` reads.
+    pub(super) fn row_of(
+        &mut self,
+        read: &mut dyn FnMut(u32, &mut [[f32; 3]]),
+        rows: u32,
+        size: [u32; 2],
+        y: u32,
+    ) -> &[[f64; 3]] {
+        self.gather(read, rows, size[1], y);
         self.shrink();
         self.blur(blur_width(size, y));
-        for (texel, light) in texels.iter_mut().zip(&self.row) {
-            *texel = pack(light.map(|v| v as f32));
-        }
+        &self.row
     }
 
     /// `sum`: the source's rows under row `y` of `height`, weighted by solid angle.
-    fn gather(&mut self, source: &Source<'_>, height: u32, y: u32) {
+    fn gather(&mut self, read: &mut dyn FnMut(u32, &mut [[f32; 3]]), rows: u32, height: u32, y: u32) {
         self.sum.fill([0.0; 3]);
-        let step = PI / f64::from(source.size[1]);
+        let step = PI / f64::from(rows);
         let mut total = 0.0;
-        for (row, begin, end) in parts(y as usize, height as usize, source.size[1] as usize) {
+        for (row, begin, end) in parts(y as usize, height as usize, rows as usize) {
             self.read.fill([0.0; 3]);
-            (source.row)(row as u32, &mut self.read);
+            read(row as u32, &mut self.read);
             // cos(begin) - cos(end), without cancellation.
             let weight = (0.5 * (begin + end) * step).sin() * (0.5 * (end - begin) * step).sin();
             total += weight;
@@ -329,41 +355,12 @@ impl Scratch {
 
 /// Texels along longitude that row `y` of a level is averaged over: as many as make it as wide on the sky as it is
 /// high. The rows at the poles, where all longitudes meet, become constant.
-fn blur_width([width, height]: [u32; 2], y: u32) -> f64 {
+pub(super) fn blur_width([width, height]: [u32; 2], y: u32) -> f64 {
     if y == 0 || y + 1 == height {
         return width.into();
     }
     let colatitude = PI * (f64::from(y) + 0.5) / f64::from(height);
     (f64::from(width) / (2.0 * f64::from(height) * colatitude.sin())).min(width.into())
-}
-
-/// Largest number that RGB9E5 holds: 511 / 512 2^16.
-const MAX_LIGHT: f32 = 65408.0;
-
-/// The light that can be stored: NaN and negative light become 0, infinite light the largest.
-pub fn limited(v: f32) -> f32 {
-    // The condition is positive so that it is false for NaN.
-    if v > 0.0 { v.min(MAX_LIGHT) } else { 0.0 }
-}
-
-/// RGB9E5 (EXT_texture_shared_exponent, section 3.8.x.1): three mantissas of 9 bits, red lowest, and one exponent of 5:
-/// mantissa 2^(exponent - 24). Rounded to the nearest.
-pub fn pack(rgb: [f32; 3]) -> u32 {
-    let rgb = rgb.map(limited);
-    let top = rgb[0].max(rgb[1]).max(rgb[2]);
-    // floor(log2(top)) + 16, at least 0; multiplied by 2^(24 - exponent) the mantissas come out.
-    let exponent = ((top.to_bits() >> 23).max(111) - 111).min(31);
-    let rounded = |v: f32, exponent: u32| (v * f32::from_bits((151 - exponent) << 23) + 0.5) as u32;
-    let exponent = if rounded(top, exponent) > 511 { exponent + 1 } else { exponent };
-    let [r, g, b] = rgb.map(|v| rounded(v, exponent).min(511));
-    r | g << 9 | b << 18 | exponent << 27
-}
-
-/// Linear Rec. 709 of a texel: exact in f32, as a GPU reads it.
-pub fn unpack(texel: u32) -> [f32; 3] {
-    // 2^(exponent - 24), from its bits.
-    let scale = f32::from_bits(((texel >> 27) + 103) << 23);
-    [0, 9, 18].map(|shift| ((texel >> shift) & 511) as f32 * scale)
 }
 
 #[cfg(test)]
@@ -414,27 +411,6 @@ mod tests {
         for (a, b) in made.levels.iter().zip(&at_once.levels) {
             assert!(a.size == b.size && a.texels == b.texels, "{:?}", a.size);
         }
-    }
-
-    #[test]
-    fn packing_is_exact_to_nine_bits_and_takes_anything() {
-        let mut largest = 0.0_f32;
-        for i in 0..200_000_u32 {
-            let top = 2.0_f32.powf(i as f32 / 200_000.0 * 40.0 - 24.0).min(MAX_LIGHT);
-            let rgb = [top, top * 0.37, top * (i % 7) as f32 / 7.0];
-            let back = unpack(pack(rgb));
-            for c in 0..3 {
-                largest = largest.max((back[c] - rgb[c]).abs() / top.max(2.0_f32.powi(-16)));
-            }
-        }
-        assert!(largest <= 1.0 / 512.0, "{largest}");
-        for exact in [0.0, 1.0, 0.5, 65408.0, 2.0_f32.powi(-24), 511.0 / 512.0] {
-            assert_eq!(unpack(pack([exact; 3])), [exact; 3]);
-        }
-        let odd = unpack(pack([f32::NAN, -1.0, f32::INFINITY]));
-        assert_eq!(odd, [0.0, 0.0, 65408.0]);
-        // A mantissa that rounds up to 512 goes over into the next exponent.
-        assert_eq!(unpack(pack([0.9999, 0.0, 0.0])), [1.0, 0.0, 0.0]);
     }
 
     #[test]
@@ -541,7 +517,7 @@ mod tests {
             for level in map.levels() {
                 for texel in &level.texels {
                     let [r, g, b] = unpack(*texel);
-                    let wanted = if odd > 1.0 { MAX_LIGHT } else { 0.0 };
+                    let wanted = limited(odd.max(0.0)) * f32::from(u8::from(odd > 1.0));
                     assert!(
                         (r / wanted.max(1e-9) - f32::from(u8::from(wanted > 0.0))).abs() < 1e-2 && r == b,
                         "{odd}: {r}"

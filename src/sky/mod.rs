@@ -7,7 +7,8 @@
 pub mod catalogue;
 pub(crate) mod grid;
 mod map;
-mod map_file;
+mod compressed;
+mod stored;
 pub(crate) mod shift;
 pub(crate) mod filter;
 pub mod galaxy;
@@ -18,12 +19,11 @@ mod field;
 pub mod milky_way;
 pub(crate) mod stars;
 
+pub use compressed::{CompressedMap, RowReader};
 pub use field::StarField;
 pub use grid::under_grid;
 pub use index::StarIndex;
 pub use map::{GrowingMap, Level, MAX_MAP_SIZE, SkyMap};
-#[cfg(test)]
-pub use map::{limited, pack, unpack};
-pub use map_file::MapFile;
 pub use shift::shifted_map_light;
 pub use stars::least_patch;
+pub use stored::{MapFile, StoredMap};

@@ -12,7 +12,7 @@ use crate::gpu::{Canvas, CanvasTexture, Device, FrameTarget, GpuTracer, in_tasks
 use crate::image::{ImageRef, Layout, Lut, PixelFormat};
 use crate::platform::Instant;
 use crate::scene::Scene;
-use crate::sky::{GrowingMap, MAX_MAP_SIZE, SkyMap};
+use crate::sky::{GrowingMap, MAX_MAP_SIZE, StoredMap};
 use crate::tracer::{FrameRequest, FrameStats, StatsBoard, Tile, TileSink};
 use js_sys::Object;
 use std::collections::VecDeque;
@@ -38,7 +38,7 @@ pub struct Tracer {
     canvas: Option<Canvas>,
     traces: Traces,
     /// The picture of the sky flag MAP, and the film's table of colours.
-    map: Option<Arc<SkyMap>>,
+    map: Option<Arc<StoredMap>>,
     lut: Option<Arc<Lut>>,
     stats: StatsBoard,
 }
@@ -189,13 +189,13 @@ impl Aborts {
 }
 
 /// The map of a picture.
-async fn sky_map(pixels: &[u8], [width, height]: [u32; 2]) -> Result<SkyMap> {
+async fn sky_map(pixels: &[u8], [width, height]: [u32; 2]) -> Result<StoredMap> {
     let image = ImageRef::new(Layout::packed(PixelFormat::Rgba8Srgb, width, height), pixels)?;
     let mut growing = GrowingMap::new([width, height])?;
     // A level is at least as wide as it is high.
     let columns = width.max(height).min(MAX_MAP_SIZE[0]);
     in_tasks(|| growing.grow_from(&image, (TEXELS / columns.max(1)).max(1))).await?;
-    Ok(growing.done())
+    Ok(growing.done().into())
 }
 
 impl Tracer {

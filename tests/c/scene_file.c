@@ -115,6 +115,9 @@ static void mistakes(BhrContext *context) {
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_scene_at(NULL, 0.0));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_scene_pictures(NULL, NULL, NULL, NULL, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_sky_map_file(NULL, "a"));
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_STATE, "no sky map", bhr_save_sky_map(context, path_of("map.ktx2")));
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "path", bhr_save_sky_map(context, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_save_sky_map(NULL, "a.ktx2"));
 }
 
 static void a_scene_that_was_not_loaded_does_not_move(BhrBackend backend) {
@@ -156,6 +159,40 @@ static void what_moves(BhrContext *context) {
     CHECK(width == 1920 && height == 1080 && count == 1 && rate == 24.0, "%u pictures", (unsigned)count);
 }
 
+/* The map of the scene, whose picture is given, comes back from blocks; saved again, the file is the same. */
+static void maps_in_blocks(BhrContext *context, const unsigned char *before) {
+    static unsigned char after[WATCH_WIDTH * WATCH_HEIGHT * 4], again[sizeof after];
+    double               sum = 0.0;
+    char                *text;
+    BhrImage             loaded;
+    BHR_INIT(loaded);
+    CHECK_FAILS(BHR_ERROR_UNSUPPORTED, ".ktx2", bhr_save_sky_map(context, path_of("map.png")));
+    CHECK_FAILS(BHR_ERROR_IO, "no/folder", bhr_save_sky_map(context, path_of("no/folder.ktx2")));
+    CHECK_OK(bhr_save_sky_map(context, path_of("map.ktx2")));
+    CHECK_OK(bhr_set_sky_map_file(context, path_of("map.ktx2")));
+    a_picture(context, after);
+    for (size_t i = 0; i < sizeof after; i++) {
+        sum += abs(after[i] - before[i]);
+    }
+    /* Every texel has another colour, and a block one line of them. */
+    CHECK(sum / sizeof after < 20.0, "blocks differ from texels by %g of 255", sum / sizeof after);
+    text = saved(context);
+    CHECK(strstr(text, "/map.ktx2\"") != NULL, "the text does not name the blocks:\n%s", text);
+    free(text);
+    CHECK_OK(bhr_save_sky_map(context, path_of("again.ktx2")));
+    CHECK_OK(bhr_set_sky_map_file(context, path_of("again.ktx2")));
+    a_picture(context, again);
+    CHECK(memcmp(after, again, sizeof after) == 0, "blocks that are saved again are others");
+    CHECK_OK(bhr_image_load(path_of("map.ktx2"), &loaded));
+    CHECK(loaded.width == 16 && loaded.height == 8 && loaded.format == BHR_FORMAT_RGBA32F, "%u x %u",
+          (unsigned)loaded.width, (unsigned)loaded.height);
+    CHECK_OK(bhr_image_release(&loaded));
+    write_file(path_of("map.ktx2"), "\253KTX 20\273\r\n\032\n and no more");
+    CHECK_FAILS(BHR_ERROR_IO, "map.ktx2", bhr_set_sky_map_file(context, path_of("map.ktx2")));
+    a_picture(context, again);
+    CHECK(memcmp(after, again, sizeof after) == 0, "a broken file took the map away");
+}
+
 static void maps(BhrContext *context) {
     static unsigned char pixels[8][16][4], before[WATCH_WIDTH * WATCH_HEIGHT * 4], after[sizeof before];
     BhrImage             map;
@@ -179,6 +216,8 @@ static void maps(BhrContext *context) {
     CHECK(strstr(text, "/map.png\"") != NULL, "the text names no absolute path:\n%s", text);
     CHECK_OK(load(context, text));
     free(text);
+    maps_in_blocks(context, before);
+    CHECK_OK(bhr_set_sky_map_file(context, path_of("map.png")));
     /* A map from memory has no path. */
     CHECK_OK(bhr_set_sky_map(context, &map));
     CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "memory", bhr_scene_save(context, NULL, 0, &size));

@@ -264,6 +264,7 @@ static void frames(const std::string &folder) {
     EXPECT(context.scene_pictures().value().width == 7 && context.scene_pictures().value().count == 1);
     EXPECT(!context.load_scene("[hole]\nspin = 2") && context.time().value() == 4.0);
     EXPECT(!context.load_scene_file("nowhere.toml") && !context.set_sky_map_file("nowhere.png"));
+    EXPECT(!context.save_sky_map("nowhere.ktx2"));
     EXPECT(!context.save_scene_file("nowhere/scene.toml"));
     const std::vector<float> grey(3 * 2 * 2 * 2, 0.5f);
     EXPECT(!context.set_film_lut_file("nowhere.cube") && !context.set_film_lut(grey, 3));

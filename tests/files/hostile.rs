@@ -59,6 +59,7 @@ pub fn bombs() -> Vec<Bomb> {
     add("a comment without end.pnm", comment, &["end"]);
     #[cfg(feature = "exr")]
     exr_bombs(&mut add);
+    bombs.extend(crate::ktx2::bombs());
     bombs
 }
 

@@ -6,12 +6,14 @@
 #![cfg(target_os = "linux")]
 
 mod hostile;
+mod ktx2;
 #[path = "../random/mod.rs"]
 mod random;
 mod seeds;
 
 use bhr::error::ErrorKind;
-use bhr::image::{self, Loaded};
+use bhr::image::{self, FromFile, Loaded};
+use bhr::sky::StoredMap;
 use random::{Random, count_from};
 use std::collections::BTreeSet;
 use std::fs;
@@ -81,13 +83,14 @@ fn seeds(kind: &str) -> Vec<seeds::Seed> {
     match kind {
         "png" => seeds::png(),
         "pnm" => seeds::pnm(),
+        "ktx2" => ktx2::seeds(),
         #[cfg(feature = "exr")]
         "exr" => seeds::exr(),
         _ => panic!("seeds of {kind}"),
     }
 }
 
-const KINDS: &[&str] = if cfg!(feature = "exr") { &["png", "pnm", "exr"] } else { &["png", "pnm"] };
+const KINDS: &[&str] = if cfg!(feature = "exr") { &["png", "pnm", "ktx2", "exr"] } else { &["png", "pnm", "ktx2"] };
 
 #[test]
 fn valid_files_of_every_kind_are_read() {
@@ -97,6 +100,40 @@ fn valid_files_of_every_kind_are_read() {
             let loaded = folder.load(&seed.bytes).unwrap_or_else(|error| panic!("{}: {error}", seed.name));
             let bytes = u64::from(loaded.width) * u64::from(loaded.height) * loaded.format.bytes_per_pixel() as u64;
             assert_eq!(loaded.pixels.as_bytes().len() as u64, bytes, "{}", seed.name);
+        }
+    }
+}
+
+#[test]
+fn ktx2_files_hold_the_same_picture() {
+    let folder = Folder::new();
+    for (name, file) in ktx2::pictures() {
+        let loaded = folder.load(&file.bytes()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let floats = bytemuck::cast_slice::<u8, f32>(loaded.pixels.as_bytes());
+        assert_eq!((loaded.width, loaded.height, floats.len()), (6, 5, 4 * 30), "{name}");
+        for (pixel, i) in floats.chunks(4).zip(0..) {
+            let [r, g, b] = ktx2::light(i % 6, i / 6);
+            assert_eq!(pixel, [r, g, b, 1.0], "{name}: {i}");
+        }
+    }
+}
+
+/// Maps of blocks have the light of their file, and levels that a file lacks are made of it.
+#[test]
+fn blocks_become_maps() {
+    let folder = Folder::new();
+    // An end of 400 is the half float ((400 64 + 32) 31) / 64, of the number 12415: 0.5154.
+    let wanted = half::f16::from_bits(((25632_u32 * 31) >> 6) as u16).to_f32();
+    for (levels, compressed) in [(1, false), (6, false), (6, true)] {
+        let path = folder.0.join("map.ktx2");
+        fs::write(&path, ktx2::map([32, 16], levels, compressed).bytes()).unwrap();
+        let map = StoredMap::from_file(&path).unwrap();
+        assert!(map.blocks().is_some() && map.size() == [32, 16]);
+        assert_eq!(map.blocks().unwrap().levels().len(), 6);
+        let texels = &map.texels().unwrap().levels()[0].texels;
+        for texel in texels {
+            let [r, g, b] = bhr::image::rgb9e5::unpack(*texel);
+            assert!((r / wanted - 1.0).abs() < 0.003 && r == g && g == b, "{r} {g} {b}, wanted {wanted}");
         }
     }
 }
@@ -238,6 +275,7 @@ fn child_reads_faulty_files() {
     }));
     limit_memory(CHILD_BYTES);
     let mut random = Random(count_from("BHR_FILES_SEED", 1, 1) as u64);
+    let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory, ErrorKind::Unsupported];
     let (mut read, mut panics) = (0, 0);
     let mut slowest = (Duration::ZERO, 0);
     for i in 0..count {
@@ -252,10 +290,14 @@ fn child_reads_faulty_files() {
                 assert_eq!(loaded.pixels.as_bytes().len() as u64, bytes, "file {i}");
             }
             Err(error) => {
-                let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory, ErrorKind::Unsupported];
                 assert!(kinds.contains(&error.kind), "file {i}: {error}");
                 panics += usize::from(error.message.contains("the codec failed"));
             }
+        }
+        if kind == "ktx2"
+            && let Err(error) = StoredMap::from_file(&folder.0.join("file"))
+        {
+            assert!(kinds.contains(&error.kind), "map {i}: {error}");
         }
         slowest = slowest.max((begin.elapsed(), i));
     }
@@ -282,6 +324,11 @@ fn faulty_png_files_are_images_or_errors() {
 #[test]
 fn faulty_pnm_files_are_images_or_errors() {
     faulty_files("pnm");
+}
+
+#[test]
+fn faulty_ktx2_files_are_images_or_errors() {
+    faulty_files("ktx2");
 }
 
 #[cfg(feature = "exr")]
@@ -338,6 +385,7 @@ fn large_files() -> Vec<(String, Vec<u8>)> {
     encoder.write_header().unwrap().write_image_data(&vec![7; 1024 * 1024 * 6]).unwrap();
     files.push(("png".into(), bytes));
     files.push(("pnm".into(), [&b"P6 1024 1024 65535\n"[..], &vec![7; 1024 * 1024 * 6]].concat()));
+    files.push(("ktx2".into(), ktx2::map([2048, 2048], 1, true).bytes()));
     files.push(("bits".into(), [&b"P4 8192 4096\n"[..], &vec![7; 1024 * 4096]].concat()));
     files
 }

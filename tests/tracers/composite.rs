@@ -10,7 +10,7 @@ use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Effects, LensTables, RayOutputKind, Scene, Sky};
-use bhr::sky::SkyMap;
+use bhr::sky::{SkyMap, StoredMap};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -27,7 +27,7 @@ fn sky(d: DVec3) -> [f64; 3] {
 }
 
 /// `sky` as a map of bhr's (bhr.h, bhr_set_sky_map).
-fn map() -> SkyMap {
+fn map() -> StoredMap {
     let [width, height] = [1024, 512];
     let direction = |x: u32, y: u32| {
         let ra = TAU * (0.5 - (f64::from(x) + 0.5) / f64::from(width));
@@ -40,7 +40,7 @@ fn map() -> SkyMap {
     };
     let texels = (0..width * height).flat_map(texel).collect::<Vec<f32>>();
     let layout = Layout::packed(PixelFormat::Rgba32F, width, height);
-    SkyMap::new(&ImageRef::new(layout, bytemuck::cast_slice(&texels)).unwrap()).unwrap()
+    SkyMap::new(&ImageRef::new(layout, bytemuck::cast_slice(&texels)).unwrap()).unwrap().into()
 }
 
 fn lens_map(renderer: &mut Renderer) -> Vec<[f32; 4]> {

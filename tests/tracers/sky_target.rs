@@ -46,7 +46,7 @@ fn levels_made_on_the_gpu_are_those_of_the_cpu() {
         scene.sky.flags = Sky::MAP;
         scene.quality.map_sampler = Some(sampler);
         renderer.scene = scene.clone();
-        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap()));
+        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap().into()));
         let expected = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
         renderer.scene = scene.clone();
         let without = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
@@ -85,7 +85,7 @@ fn a_cube_is_the_sky_that_a_camera_sees() {
         scene.disk = None;
         scene.camera.projection = Projection::Equirect;
         renderer.scene = scene.clone();
-        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap()));
+        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap().into()));
         let shown = [400, 200];
         let expected = picture(&mut renderer, PixelFormat::Rgba8Srgb, shown, None, false);
         renderer.scene = scene;

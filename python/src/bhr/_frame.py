@@ -156,7 +156,7 @@ def _format(array: Any, format: FormatLike | None) -> Format:
 
 
 def load(path: str | os.PathLike[str]) -> Frame:
-    """Reads a PNG, EXR or PNM file: RGBA8_SRGB from files of 8 bits, else RGBA32F."""
+    """Reads a PNG, EXR, PNM or KTX2 file: RGBA8_SRGB from files of 8 bits, else RGBA32F."""
     image = new("BhrImage")
     check(lib.bhr_image_load(_path(path), image))
     format = Format(image.format)

@@ -103,6 +103,11 @@ class SceneText:
         self._call(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
         self._targets.pop("sky", None)
 
+    def save_sky_map(self, path: str | os.PathLike[str]) -> None:
+        """Writes the map that `set_sky_map` gave to a .ktx2 file in blocks of BC6H, which `set_sky_map` reads without
+        work on its texels, and which takes a quarter of the memory in the context and on the GPU."""
+        self._call(lib.bhr_save_sky_map, _path(path))
+
     def set_film_lut(self, lut: str | os.PathLike[str] | npt.NDArray[Any] | None) -> None:
         """Gives the film a LUT, a table of colours that take the places of the picture's, which is copied: a .cube
         file, whose path is part of what `save` writes, or a numpy array of shape (side, side, side, 3) with side 2 to

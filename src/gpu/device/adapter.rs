@@ -207,8 +207,9 @@ pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// A device is opened with timestamps and mappable storage buffers if the adapter has them, and no other feature.
-pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+/// A device is opened with timestamps, mappable storage buffers and textures in blocks (BC) if the adapter has them,
+/// and no other feature; one that is the host's without blocks, which hosts of earlier versions did not turn on.
+pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter, is_hosts: bool) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let limits = wgpu::Limits {
         max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
@@ -219,10 +220,11 @@ pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::Device
         max_storage_textures_per_shader_stage: offered.max_storage_textures_per_shader_stage.min(MOST_BOUND),
         ..required_limits()
     };
+    let of_any = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS;
+    let wanted = if is_hosts { of_any } else { of_any | wgpu::Features::TEXTURE_COMPRESSION_BC };
     wgpu::DeviceDescriptor {
         label: Some("bhr"),
-        required_features: adapter.features()
-            & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
+        required_features: adapter.features() & wanted,
         required_limits: limits,
         memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
         ..Default::default()

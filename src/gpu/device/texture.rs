@@ -104,8 +104,10 @@ impl Device {
             let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
             (raw.clone(), raw.create_view(&view))
         })?;
+        let (block_width, block_height) = format.block_dimensions();
         let texels = |level: u32| {
-            let [width, height] = [width, height].map(|side| u64::from((side >> level).max(1)));
+            let [width, height] = [(width, block_width), (height, block_height)]
+                .map(|(side, block)| u64::from((side >> level).max(1).div_ceil(block)));
             width * height * u64::from(if solid { (layers >> level).max(1) } else { layers })
         };
         let bytes = texel_bytes(format) * (0..levels).map(texels).sum::<u64>();
@@ -133,9 +135,10 @@ impl Device {
     }
 
     /// Writes a rectangle of `width` columns of a level, whose first texel is `first` (column, row); the length of
-    /// `data` decides its rows. Errors: as [`Self::write_rows`].
+    /// `data` decides its rows, which are of blocks in formats that have them. Errors: as [`Self::write_rows`].
     pub fn write_part(&self, texture: &Texture, level: u32, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
-        let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
+        let format = texture.raw.format();
+        let row_bytes = width.div_ceil(format.block_dimensions().0) * texel_bytes(format) as u32;
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
             let size = data.len();
             return Err(Error::internal(format!("{size} bytes are not a whole number of rows of {row_bytes} bytes")));
@@ -144,6 +147,7 @@ impl Device {
     }
 }
 
+/// Bytes of a texel, or of a block.
 fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
     // None only for formats without one texel size (combined depth and stencil, planar), which bhr does not make.
     format.block_copy_size(None).unwrap_or(0).into()

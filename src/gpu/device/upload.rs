@@ -25,7 +25,8 @@ impl Device {
     }
 
     /// Writes rows of `row_bytes`, one at least, into a part of a level of `texture` of so many rows and `width`
-    /// columns, which begins at `first`, before the next submission runs. Errors: as [`Device::scoped`].
+    /// columns, which begins at `first`, before the next submission runs. Rows are of blocks where the texture's format
+    /// has blocks. Errors: as [`Device::scoped`].
     pub(in crate::gpu) fn write_texels(
         &self,
         (texture, mip_level): (&wgpu::Texture, u32),
@@ -35,8 +36,10 @@ impl Device {
         data: &[u8],
     ) -> Result<()> {
         let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let (block_width, block_height) = texture.format().block_dimensions();
         let band_rows = (BAND_BYTES / pitch).max(1);
-        for (band, y) in data.chunks(band_rows * row_bytes).zip((first[1]..).step_by(band_rows)) {
+        let tops = (first[1]..).step_by(band_rows * block_height as usize);
+        for (band, y) in data.chunks(band_rows * row_bytes).zip(tops) {
             let filled = self.filled(band, row_bytes, pitch)?;
             let layout =
                 wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None };
@@ -47,7 +50,9 @@ impl Device {
                 origin: wgpu::Origin3d { x: first[0], y, z: 0 },
                 aspect: wgpu::TextureAspect::All,
             };
-            let height = (band.len() / row_bytes) as u32;
+            // Blocks are copied whole, also where the level ends within them.
+            let height = (band.len() / row_bytes) as u32 * block_height;
+            let width = width.next_multiple_of(block_width);
             let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
             self.upload("writing a texture", |encoder| encoder.copy_buffer_to_texture(from, to, size))?;
         }

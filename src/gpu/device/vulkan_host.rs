@@ -185,7 +185,7 @@ pub(in crate::gpu) fn of_device(host: &HostVulkan) -> Result<Requirements> {
     if let Some(Asked(.., known)) = asked.iter().find(|Asked(ids, of, _)| (*ids, *of) == (found, version)) {
         return Ok(*known);
     }
-    let wanted = device_descriptor(adapter.raw()?).required_features;
+    let wanted = device_descriptor(adapter.raw()?, true).required_features;
     // SAFETY: nothing is destroyed.
     let hal = unsafe { raw.as_hal::<Vulkan>() }.ok_or_else(|| Error::internal("an adapter of another interface"))?;
     let (list, _) = device_extensions(&hal, wanted);
@@ -224,7 +224,7 @@ pub(in crate::gpu) fn adapter(host: HostVulkan, release: &Arc<ReleaseGuard>) -> 
         let raw = instance.create_adapter_from_hal(exposed);
         (instance, raw)
     };
-    let wanted = device_descriptor(&raw).required_features;
+    let wanted = device_descriptor(&raw, true).required_features;
     let (extensions, shared) = {
         // SAFETY: nothing is destroyed.
         let hal = unsafe { raw.as_hal::<Vulkan>() };

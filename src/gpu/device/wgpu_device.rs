@@ -132,7 +132,7 @@ struct Health {
 }
 
 impl Device {
-    /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
+    /// Opens a device with the features of [`device_descriptor`].
     ///
     /// A GL device is for threads without a GL context: wgpu leaves none current on the thread of a call, and where
     /// another interface's is current (GLX beside EGL) it panics, when the device is dropped too. `GlTracer`
@@ -141,7 +141,7 @@ impl Device {
     /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
     pub fn open(adapter: &Adapter) -> Result<Self> {
         let raw = adapter.raw()?;
-        let descriptor = device_descriptor(raw);
+        let descriptor = device_descriptor(raw, adapter.host().is_some());
         let limits = descriptor.required_limits.clone();
         let driver = driver_lock::lock();
         let opened = catch_unwind(AssertUnwindSafe(|| opened(adapter, raw, &descriptor)));
@@ -223,6 +223,11 @@ impl Device {
     /// Whether kernels can write buffers that the host maps.
     pub fn maps_storage(&self) -> bool {
         self.raw.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS)
+    }
+
+    /// Whether textures may be in blocks of BC6H.
+    pub fn has_blocks(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC)
     }
 
     /// Nanoseconds per tick of a timestamp.

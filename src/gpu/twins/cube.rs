@@ -3,9 +3,9 @@
 
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, twin};
+use crate::image::rgb9e5::{limited, pack, unpack};
 use crate::scene::Projection;
 use crate::scene::projection::{Mapping, turned_to_face};
-use crate::sky::{limited, pack, unpack};
 use glam::{DVec2, DVec3};
 use half::f16;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -149,7 +149,7 @@ fn made(kind: Kind, number: u32) -> View {
     scene.sky.flags = Sky::STARS | Sky::GRID | Sky::MAP;
     scene.sky.stars_brightness = random.log(0.5, 2.0);
     scene.sky.map_brightness = random.log(0.1, 2.0);
-    scene.sky_map = Some(sky::map().clone());
+    scene.sky_map = Some(sky::stored_map().clone());
     // Physics, some effects off, some weakened.
     if number % 3 == 1 {
         scene.effects = Effects(random.bits() as u32 & Effects::ALL);

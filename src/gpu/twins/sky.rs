@@ -9,7 +9,7 @@ use crate::gpu::kernel::slots::SKY_MAP;
 use crate::random::mix;
 use crate::sky::filter;
 use crate::sky::index::{STAR_LEVELS, cell_of, level_for, margin, side};
-use crate::sky::{SkyMap, StarField, shifted_map_light, stars, under_grid};
+use crate::sky::{SkyMap, StarField, StoredMap, shifted_map_light, stars, under_grid};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -35,16 +35,21 @@ fn in_footprint() -> Footprint { return footprint_of(in3(0u), in3(3u), in3(6u));
 
 const LEAST_PATCH: f64 = 0.001_f32 as f64;
 
-/// A map of noise.
-pub fn map() -> &'static Arc<SkyMap> {
-    static MAP: OnceLock<Arc<SkyMap>> = OnceLock::new();
+/// A map of noise, as a scene has it.
+pub fn stored_map() -> &'static Arc<StoredMap> {
+    static MAP: OnceLock<Arc<StoredMap>> = OnceLock::new();
     MAP.get_or_init(|| {
         let texel = |x: u32, y: u32, c: u32| (mix(x + 1000 * y + 77_777_777 * c) >> 16) as f32 / 65536.0;
         let row = |y: u32, out: &mut [[f32; 3]]| {
             (0..).zip(out).for_each(|(x, out)| *out = [0, 1, 2].map(|c| texel(x, y, c)));
         };
-        Arc::new(SkyMap::of_rows([128, 64], &row).expect("a map"))
+        Arc::new(SkyMap::of_rows([128, 64], &row).expect("a map").into())
     })
+}
+
+/// The map of noise.
+pub fn map() -> &'static SkyMap {
+    stored_map().texels().expect("a map of texels")
 }
 
 /// A map as the GPU tracer lays its levels out.

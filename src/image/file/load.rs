@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Reading image files: the kind of a file, told by its first bytes, and the image that every kind becomes.
 
+use super::ktx2::{self, BlockFile};
 #[cfg(feature = "exr")]
 use super::layer::Channels;
 use super::loaded::Loaded;
@@ -12,8 +13,8 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Reads a PNG, EXR or PNM file: 8-bit files of sRGB as `Rgba8Srgb`, others as linear `Rgba32F` in Rec. 709, by the
-/// curve and the primaries that a file has, or those of sRGB (PNG, PNM) and Rec. 709 (EXR). EXR files: the largest
+/// Reads a PNG, EXR, PNM or KTX2 file: 8-bit files of sRGB as `Rgba8Srgb`, others as linear `Rgba32F` in Rec. 709, by
+/// the curve and the primaries that a file has, or those of sRGB (PNG, PNM) and Rec. 709 (EXR). EXR files: the largest
 /// level of the channels that `exr_channels` chooses, cut to the display window; 0 where the data window does not
 /// reach. Errors: IO for a file that is not there, not readable, broken, of another kind, or past a limit, which is
 /// named: 2^20 pixels a side, 4 GiB as it is handed out, and for EXR 8 MiB of headers, 4096 channels, 64 to 256 MiB a
@@ -30,6 +31,16 @@ pub fn load(path: &Path) -> Result<Loaded> {
 pub fn load_channels(path: &Path) -> Result<Channels> {
     let read = || on_own_thread(|| super::exr_values::read(open(path)?));
     read().map_err(|error| about("read", path, &error))
+}
+
+/// The blocks of a KTX2 file whose light is that of Rec. 709 in BC6H, unsigned, the top row first. `None`: it is
+/// another file, which [`load`] may read. Errors: as of [`load`].
+pub fn load_blocks(path: &Path) -> Result<Option<BlockFile>> {
+    let read = || {
+        let mut file = open(path)?;
+        if magic(&mut file)? == ktx2::MAGIC { ktx2::read_blocks(file) } else { Ok(None) }
+    };
+    on_own_thread(read).map_err(|error| about("read", path, &error))
 }
 
 /// A file of text in UTF-8, of at most so many bytes. Errors: IO; OUT_OF_MEMORY.
@@ -65,11 +76,16 @@ fn refuse_as_source(there: &Metadata) -> Result<()> {
     if there.is_file() { Ok(()) } else { Err(io_error("it is no regular file")) }
 }
 
-fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
-    let mut magic = Vec::with_capacity(8);
-    file.by_ref().take(8).read_to_end(&mut magic).map_err(io_error)?;
+/// The first bytes of a file, 0 past its end; it is read from its beginning afterwards.
+fn magic(file: &mut (impl BufRead + Seek)) -> Result<[u8; 8]> {
+    let mut bytes = Vec::with_capacity(8);
+    file.by_ref().take(8).read_to_end(&mut bytes).map_err(io_error)?;
     file.seek(SeekFrom::Start(0)).map_err(io_error)?;
-    match magic[..] {
+    Ok(std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0)))
+}
+
+fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
+    match magic(&mut file)? {
         [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'] => png::read(file),
         #[cfg(feature = "exr")]
         [0x76, 0x2f, 0x31, 0x01, ..] => super::exr::read(file),
@@ -77,6 +93,7 @@ fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
         [0x76, 0x2f, 0x31, 0x01, ..] => Err(crate::error::Error::unsupported(super::support::WITHOUT_EXR)),
         [b'P', b'1'..=b'6', ..] => pnm::read(file),
         [b'P', b'7', ..] => pam::read(file),
-        _ => Err(io_error("it is no PNG, EXR or PNM file")),
+        ktx2::MAGIC => ktx2::read(file),
+        _ => Err(io_error("it is no PNG, EXR, PNM or KTX2 file")),
     }
 }

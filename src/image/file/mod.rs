@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Image files: PNG, OpenEXR (cargo feature `exr`) and PNM. A file appears whole or not at all; a broken one is an
-//! error, and what it claims to hold is checked before memory is taken for it. Each kind of file has a module of its
+//! Image files: PNG, OpenEXR (cargo feature `exr`), PNM and KTX2. A file appears whole or not at all; a broken one is
+//! an error, and what it claims to hold is checked before memory is taken for it. Each kind of file has a module of its
 //! own; `support` holds what they share: limits, errors, memory. Decoders and encoders run on a thread of their own:
 //! see `support::on_own_thread`.
 
@@ -26,6 +26,8 @@ mod pam;
 mod png_colours;
 mod png;
 mod pnm;
+mod ktx2_header;
+mod ktx2;
 mod load;
 mod save;
 mod cube;
@@ -36,12 +38,13 @@ mod colour_tests;
 #[cfg(all(test, feature = "exr"))]
 mod layer_tests;
 
+pub use ktx2::BlockFile;
 pub use layer::{Alpha, Attribute, Channels, Effort, Layer, Values};
 #[cfg(feature = "exr")]
 pub use load::load_channels;
-pub use load::{decode_png, load, load_text};
+pub use load::{decode_png, load, load_blocks, load_text};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
 #[cfg(feature = "exr")]
 pub use save::save_channels;
-pub use save::{save, save_layers, save_text};
+pub use save::{save, save_blocks, save_layers, save_text};
 pub use support::probe;

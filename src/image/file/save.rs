@@ -3,9 +3,10 @@
 
 use super::layer::{Alpha, Attribute, Effort, Layer};
 use super::support::{about, on_own_thread};
-use super::{png, pnm, replace};
+use super::{ktx2, png, pnm, replace};
 use crate::error::{Error, Result};
 use crate::image::ColourSpace;
+use crate::image::bc6h::Blocks;
 use crate::image::memory::{ImageRef, PixelFormat};
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -90,6 +91,20 @@ pub fn save_layers(
             let mut file = BufWriter::new(file);
             encode_layers(layers, (attributes, space), effort, &mut file)?;
             file.into_inner().map_err(super::support::io_error)
+        })
+    };
+    on_own_thread(write).map_err(|error| about("write", path, &error))
+}
+
+/// Writes a picture and its levels, each of half the columns and rows of the one before, rounded down, to a KTX2 file
+/// as [`super::load_blocks`] reads it, which appears as in [`save`]. `filtered`: that of [`super::BlockFile`]. Errors:
+/// IO; OUT_OF_MEMORY.
+pub fn save_blocks(levels: &[Blocks], filtered: bool, path: &Path) -> Result<()> {
+    let write = || {
+        replace::with(path, |out| {
+            let mut out = BufWriter::new(out);
+            ktx2::write(levels, filtered, &mut out)?;
+            out.into_inner().map_err(super::support::io_error)
         })
     };
     on_own_thread(write).map_err(|error| about("write", path, &error))

@@ -4,13 +4,16 @@
 
 use super::sky_target::{SkyFetch, SkyTarget};
 use super::sky_texture::{MapTexture, level_place, texture_height};
+use crate::allocate::filled;
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::slots::SKY_MAP;
+use crate::image::bc6h::{Blocks, SIDE};
 use crate::scene::Scene;
-use crate::sky::{Level, SkyMap};
+use crate::sky::{CompressedMap, RowReader, SkyMap, StoredMap};
+use std::ops::Range;
 use std::sync::{Arc, Weak};
 
 /// Bytes that are written in one submission, about: until it has run, the driver keeps a copy of them.
@@ -19,7 +22,7 @@ const BAND_BYTES: usize = 16 << 20;
 pub struct SkyMaps {
     milky_way: Option<MapTexture>,
     /// Together with what it was made from.
-    map: Option<(Weak<SkyMap>, MapTexture)>,
+    map: Option<(Weak<StoredMap>, MapTexture)>,
     /// In its place: one that lies in a target of the host's.
     target: Option<SkyTarget>,
     /// A dark texel, bound in the place of what is not shown.
@@ -100,7 +103,7 @@ impl SkyMaps {
             self.target = Some(SkyTarget::new(device, picture, for_sampler)?);
         }
         if let (Some(map), None) = (scene.shown_map(), &self.map) {
-            self.map = Some((Arc::downgrade(map), upload(device, map, for_sampler)?));
+            self.map = Some((Arc::downgrade(map), upload_stored(device, map, for_sampler)?));
         }
         Ok(())
     }
@@ -115,34 +118,109 @@ impl SkyMaps {
     }
 }
 
-/// All levels in one texture: as its own, or, without a sampler, the finest on top, below it the others side by side
-/// (`level_place` of sky/map.wgsl), because lavapipe (Mesa 22.3) takes the size of a texture's level for the size of
-/// another where pixels of a workgroup read texels of different ones. Levels that do not fit into a texture are left
-/// out.
+/// All levels of a map of texels in one texture: as its own, or, without a sampler, the finest on top, below it the
+/// others side by side (`level_place` of sky/map.wgsl), because lavapipe (Mesa 22.3) takes the size of a texture's
+/// level for the size of another where pixels of a workgroup read texels of different ones. Levels that do not fit into
+/// a texture are left out.
 fn upload(device: &Device, map: &SkyMap, for_sampler: bool) -> Result<MapTexture> {
+    let sizes = map.levels().iter().map(|level| level.size).collect::<Vec<_>>();
+    upload_texels(device, &sizes, for_sampler, &mut |level, rows, texels| {
+        let level = &map.levels()[level];
+        rows.zip(texels.chunks_mut(level.size[0] as usize)).for_each(|(y, row)| row.copy_from_slice(level.row(y)));
+        Ok(())
+    })
+}
+
+/// A map of the host's: in its blocks where device and sampler read them, else in texels.
+fn upload_stored(device: &Device, map: &StoredMap, for_sampler: bool) -> Result<MapTexture> {
+    let Some(blocks) = map.blocks() else { return upload(device, map.texels()?, for_sampler) };
+    if for_sampler && let Some(texture) = upload_blocks(device, blocks)? {
+        return Ok(texture);
+    }
+    let sizes = blocks.levels().iter().map(|level| level.size).collect::<Vec<_>>();
+    let mut reader = None;
+    upload_texels(device, &sizes, for_sampler, &mut |number, rows, texels| {
+        let level = &blocks.levels()[number];
+        let kept = reader.take().filter(|(of, _)| *of == number);
+        let (_, rows_of) = reader.insert(match kept {
+            Some(kept) => kept,
+            None => (number, RowReader::new(level)?),
+        });
+        rows.zip(texels.chunks_mut(level.size[0] as usize)).try_for_each(|(y, row)| rows_of.read_texels(y, row))
+    })
+}
+
+/// `None`: the device has no such textures, or none of this size.
+fn upload_blocks(device: &Device, map: &CompressedMap) -> Result<Option<MapTexture>> {
     let limit = device.limits().max_texture_dimension_2d;
-    let height = |level: &Level| if for_sampler { level.size[1] } else { texture_height(level.size) };
-    let fitting = |level: &&Level| level.size[0] <= limit && height(level) <= limit;
     let levels = map.levels();
-    let first = levels.iter().position(|level| fitting(&level)).unwrap_or(levels.len());
+    let first = levels.iter().position(|level| level.size.iter().all(|side| *side <= limit)).unwrap_or(levels.len());
     let levels = levels.get(first..).unwrap_or(&[]);
-    let finest = levels.first().ok_or_else(|| Error::internal("a sky map without levels"))?.size;
+    let whole = |level: &&Blocks| level.size.iter().all(|side| side.is_multiple_of(SIDE));
+    let Some(finest) = levels.first().filter(whole).filter(|_| device.has_blocks()) else { return Ok(None) };
+    let format = wgpu::TextureFormat::Bc6hRgbUfloat;
+    let texture = device.table_of_levels("sky map", format, finest.size, levels.len() as u32)?;
+    let mut written = Written::default();
+    for (level, number) in levels.iter().zip(0..) {
+        let across = Blocks::count(level.size)[0];
+        let band_rows = (BAND_BYTES / size_of::<[u8; 16]>() / across).max(1);
+        let tops = (0..).step_by(band_rows * SIDE as usize);
+        for (band, top) in level.blocks.chunks(band_rows * across).zip(tops) {
+            device.write_part(&texture, number, [0, top], level.size[0], band.as_flattened())?;
+            written.add(device, size_of_val(band))?;
+        }
+    }
+    Ok(Some(MapTexture { texture, finest: finest.size }))
+}
+
+/// Bytes that have been written since a submission.
+#[derive(Default)]
+struct Written(usize);
+
+impl Written {
+    /// Errors: as [`Device::submit_and_wait`].
+    fn add(&mut self, device: &Device, bytes: usize) -> Result<()> {
+        self.0 += bytes;
+        if self.0 < BAND_BYTES {
+            return Ok(());
+        }
+        self.0 = 0;
+        device.submit_and_wait(device.encoder("sky map")?)
+    }
+}
+
+/// Writes some rows of the level of this number into texels.
+type TexelReader<'a> = dyn FnMut(usize, Range<u32>, &mut [u32]) -> Result<()> + 'a;
+
+/// The texture of [`upload`], of levels of these sizes.
+fn upload_texels(
+    device: &Device,
+    sizes: &[[u32; 2]],
+    for_sampler: bool,
+    read: &mut TexelReader<'_>,
+) -> Result<MapTexture> {
+    let limit = device.limits().max_texture_dimension_2d;
+    let height = |size: [u32; 2]| if for_sampler { size[1] } else { texture_height(size) };
+    let first = sizes.iter().position(|size| size[0] <= limit && height(*size) <= limit).unwrap_or(sizes.len());
+    let sizes = sizes.get(first..).unwrap_or(&[]);
+    let finest = *sizes.first().ok_or_else(|| Error::internal("a sky map without levels"))?;
     let texture = match for_sampler {
-        true => device.table_of_levels("sky map", SKY_MAP.format, finest, levels.len() as u32)?,
+        true => device.table_of_levels("sky map", SKY_MAP.format, finest, sizes.len() as u32)?,
         false => device.table("sky map", SKY_MAP.format, [finest[0], texture_height(finest)])?,
     };
-    let mut written = 0;
-    for (level, number) in levels.iter().zip(0..) {
+    let mut written = Written::default();
+    let band_texels = (BAND_BYTES / size_of::<u32>()).max(finest[0] as usize);
+    let mut texels = filled(band_texels.min(finest[0] as usize * finest[1] as usize), 0, "texels of a sky map")?;
+    for (size, number) in sizes.iter().zip(0_u32..) {
         let (own, [left, top]) = if for_sampler { (number, [0, 0]) } else { (0, level_place(finest, number)) };
-        let width = level.size[0] as usize;
-        let band_rows = (BAND_BYTES / size_of::<u32>() / width).max(1);
-        for (band, row) in level.texels.chunks(band_rows * width).zip((top..).step_by(band_rows)) {
-            device.write_part(&texture, own, [left, row], level.size[0], bytemuck::cast_slice(band))?;
-            written += size_of_val(band);
-            if written >= BAND_BYTES {
-                written = 0;
-                device.submit_and_wait(device.encoder("sky map")?)?;
-            }
+        let width = size[0] as usize;
+        let band_rows = (band_texels / width) as u32;
+        for row in (0..size[1]).step_by(band_rows as usize) {
+            let rows = row..(row + band_rows).min(size[1]);
+            let band = &mut texels[..rows.len() * width];
+            read(first + number as usize, rows, band)?;
+            device.write_part(&texture, own, [left, top + row], size[0], bytemuck::cast_slice(band))?;
+            written.add(device, size_of_val(band))?;
         }
     }
     Ok(MapTexture { texture, finest })
