@@ -164,7 +164,7 @@ fn command() -> Command {
         )
         .subcommand(
             Command::new("map")
-                .about("Writes a picture of the whole sky as a map in blocks, which takes a quarter of the memory")
+                .about("Compresses a picture of the whole sky to a .ktx2 sky map, which takes a quarter of the memory")
                 .arg(
                     Arg::new("picture")
                         .required(true)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `bhr map`: a picture of the whole sky as a map in blocks. Renders nothing.
+//! `bhr map` writes a picture of the whole sky as a map in blocks of BC6H. Knows no scene.
 
 use crate::ending::Ending;
 use crate::progress::say;

@@ -914,10 +914,10 @@ BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * the top down, RGBA8_SRGB for 8-bit files in sRGB, else RGBA32F, which is linear light in Rec. 709, converted from
  * the colours that the file states. The pixels are the library's: give them back with bhr_image_release, once.
  * docs/files.md says how files are read, and which bounds they have.
- * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, for other
- * texels of a KTX2 file than BC6H, RGB9E5, floats, halves and 8-bit sRGB, or in a library built without EXR; IO for
- * a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels
- * in memory. Memory is taken after the file's claims are checked. */
+ * Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, for texels,
+ * primaries, curves or compressions of a KTX2 file that docs/files.md does not name, or in a library built without
+ * EXR; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB
+ * of pixels in memory. Memory is taken after the file's claims are checked. */
 BHR_NODISCARD BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
 /** Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0.
@@ -970,8 +970,8 @@ BHR_NODISCARD BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * from the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). Light is
  * linear Rec. 709, 8-bit formats are decoded; NaN and negative numbers are 0, alpha is ignored. Pictures of more
  * than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device
- * to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device; of files in blocks, which
- * bhr_save_sky_map writes, 1.4 and 1.4. docs/maps.md.
+ * to its largest texture. Memory a texel: 5.4 bytes in the context and on a GPU, 6 on a software device; 1.34 for
+ * maps in blocks (bhr_save_sky_map), until a tracer unpacks them. docs/maps.md.
  * Errors: INVALID_ARGUMENT for R32F and RGB10A2. */
 BHR_NODISCARD BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
@@ -981,8 +981,8 @@ BHR_NODISCARD BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equ
 BHR_NODISCARD BhrStatus bhr_set_sky_map_file(BhrContext *context, const char *path);
 
 /** Writes the map that bhr_set_sky_map or bhr_set_sky_map_file gave to a .ktx2 file in blocks of BC6H with all its
- * levels: a byte and a third for a texel. bhr_set_sky_map_file reads it without work on its texels, and GPUs without
- * unpacking it; docs/maps.md says to what accuracy. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
+ * levels: 1.34 bytes a texel. bhr_set_sky_map_file and GPUs take the blocks as they are; docs/maps.md says how exact
+ * they are. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
  * without a map, or with one on the GPU (bhr_interop.h); UNSUPPORTED for another ending of the path; IO. @since 0.2.0
  */
 BHR_NODISCARD BhrStatus bhr_save_sky_map(const BhrContext *context, const char *path);

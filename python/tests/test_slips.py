@@ -146,10 +146,10 @@ def test_skies_come_from_files(ctx, tmp_path):
         assert not np.array_equal(ctx.render(32, 18).array, expected)
         ctx.set_sky_map(path)
         assert np.array_equal(ctx.render(32, 18).array, expected)
-    # In blocks, stripes of one texel are on a line of colours.
+    # Blocks of two colours lie on one line, so that little is lost.
     ctx.save_sky_map(tmp_path / "sky.ktx2")
     ctx.set_sky_map(tmp_path / "sky.ktx2")
-    assert np.abs(ctx.render(32, 18).array.astype(int) - expected).max() <= 3
+    assert np.abs(ctx.render(32, 18).array.astype(int) - expected).max() <= 6
     assert bhr.load(tmp_path / "sky.ktx2").array.shape == stripes.shape
     with pytest.raises(bhr.Error, match=r"\.ktx2 files"):
         ctx.save_sky_map(tmp_path / "sky.png")

@@ -308,10 +308,10 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 /// the top down, RGBA8_SRGB for 8-bit files in sRGB, else RGBA32F, which is linear light in Rec. 709, converted from
 /// the colours that the file states. The pixels are the library's: give them back with bhr_image_release, once.
 /// docs/files.md says how files are read, and which bounds they have.
-/// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, for other
-/// texels of a KTX2 file than BC6H, RGB9E5, floats, halves and 8-bit sRGB, or in a library built without EXR; IO for
-/// a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels
-/// in memory. Memory is taken after the file's claims are checked.
+/// Errors: UNSUPPORTED for EXR of the compressions DWA and HTJ2K, for colours of a PNG that are not known, for texels,
+/// primaries, curves or compressions of a KTX2 file that docs/files.md does not name, or in a library built without
+/// EXR; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB
+/// of pixels in memory. Memory is taken after the file's claims are checked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

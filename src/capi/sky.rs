@@ -125,8 +125,8 @@ pub unsafe extern "C" fn bhr_get_sky(context: *const BhrContext, sky: *mut BhrSk
 /// from the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). Light is
 /// linear Rec. 709, 8-bit formats are decoded; NaN and negative numbers are 0, alpha is ignored. Pictures of more
 /// than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device
-/// to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device; of files in blocks, which
-/// bhr_save_sky_map writes, 1.4 and 1.4. docs/maps.md.
+/// to its largest texture. Memory a texel: 5.4 bytes in the context and on a GPU, 6 on a software device; 1.34 for
+/// maps in blocks (bhr_save_sky_map), until a tracer unpacks them. docs/maps.md.
 /// Errors: INVALID_ARGUMENT for R32F and RGB10A2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *const BhrImage) -> BhrStatus {
@@ -164,8 +164,8 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
 }
 
 /// Writes the map that bhr_set_sky_map or bhr_set_sky_map_file gave to a .ktx2 file in blocks of BC6H with all its
-/// levels: a byte and a third for a texel. bhr_set_sky_map_file reads it without work on its texels, and GPUs without
-/// unpacking it; docs/maps.md says to what accuracy. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
+/// levels: 1.34 bytes a texel. bhr_set_sky_map_file and GPUs take the blocks as they are; docs/maps.md says how exact
+/// they are. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
 /// without a map, or with one on the GPU (bhr_interop.h); UNSUPPORTED for another ending of the path; IO. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_save_sky_map(context: *const BhrContext, path: *const c_char) -> BhrStatus {

@@ -12,8 +12,8 @@ use parking_lot::Mutex;
 
 /// Rows of blocks that a thread takes at a time.
 const BAND: usize = 4;
-/// Rows that filtering would average over no more texels than these keep the blocks of the file: they are two thirds
-/// of a texel's height wide at least, where a pixel that sees them takes in more than one.
+/// Rows that filtering would average over at most this many texels keep the file's blocks: their texels are at least
+/// 2 / 3 as wide as high, so that a pixel averages over more than one of them anyway.
 const KEPT_WIDTH: f64 = 1.5;
 
 /// A picture of the whole sky, whose light is unpacked when it is read.
@@ -34,8 +34,9 @@ impl<'a> RowReader<'a> {
     /// Errors: OUT_OF_MEMORY.
     pub fn new(blocks: &'a Blocks) -> Result<Self> {
         let across = Blocks::count(blocks.size)[0];
-        let texels = filled(across, [[0.0; 3]; 16], "blocks of a sky map")?;
-        Ok(Self { blocks, unpacked: None, texels, row: Vec::new() })
+        let what = "rows of a sky map";
+        let (texels, row) = (filled(across, [[0.0; 3]; 16], what)?, filled(blocks.size[0] as usize, [0.0; 3], what)?);
+        Ok(Self { blocks, unpacked: None, texels, row })
     }
 
     /// The light of row `y`, as many texels as there is room for.
@@ -51,33 +52,29 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Row `y` as texels of a [`Level`]. Errors: OUT_OF_MEMORY.
-    pub fn read_texels(&mut self, y: u32, out: &mut [u32]) -> Result<()> {
-        if self.row.len() != out.len() {
-            self.row = filled(out.len(), [0.0; 3], "a row of a sky map")?;
-        }
+    /// Row `y` as texels of a [`Level`].
+    pub fn read_texels(&mut self, y: u32, out: &mut [u32]) {
         let mut row = std::mem::take(&mut self.row);
         self.read(y, &mut row);
         out.iter_mut().zip(&row).for_each(|(texel, light)| *texel = pack(*light));
         self.row = row;
-        Ok(())
     }
 }
 
 /// Writes the row of this number.
 type Rows<'a> = Box<dyn FnMut(u32, &mut [[f32; 3]]) + 'a>;
 
-/// A level whose rows each thread reads by what `rows` makes for it. Rows of blocks that `kept` has are its own.
-/// Errors: OUT_OF_MEMORY.
+/// Packs a level. Each thread calls `rows` once for a reader of its own, of so many columns; where `kept` gives a row
+/// of blocks, that is copied. Errors: OUT_OF_MEMORY.
 fn packed<'a, 'k>(
     size: [u32; 2],
-    rows: &(dyn Fn() -> Result<Rows<'a>> + Sync),
+    (columns, rows): (usize, &(dyn Fn() -> Result<Rows<'a>> + Sync)),
     kept: &(dyn Fn(u32) -> Option<&'k [[u8; 16]]> + Sync),
 ) -> Result<Blocks> {
     let ([across, down], [width, height]) = (Blocks::count(size), size.map(|side| side as usize));
     let mut blocks = filled(across * down, [0; 16], "blocks of a sky map")?;
     let bands = Mutex::new(blocks.chunks_mut(BAND * across).zip((0..).step_by(BAND * SIDE as usize)));
-    on_threads(threads_for(width * height), &|| {
+    on_threads(threads_for(width * height, columns), &|| {
         let mut read = rows()?;
         let mut light = filled(width * SIDE as usize, [0.0; 3], "rows of a sky map")?;
         loop {
@@ -102,8 +99,8 @@ fn packed<'a, 'k>(
     Ok(Blocks { size, blocks })
 }
 
-/// A level of `size` whose texels are as wide as they are high, from one of that size or a finer one; `keeps`: blocks
-/// of the source's that would hardly change stay. Errors: OUT_OF_MEMORY.
+/// A level of `size` whose texels are as wide as they are high, from one of that size or a finer one. `keeps`: copy the
+/// source's blocks where filtering would hardly change them. Errors: OUT_OF_MEMORY.
 fn filtered(source: &Blocks, size: [u32; 2], keeps: bool) -> Result<Blocks> {
     let rows = || -> Result<Rows<'_>> {
         let mut reader = RowReader::new(source)?;
@@ -117,14 +114,15 @@ fn filtered(source: &Blocks, size: [u32; 2], keeps: bool) -> Result<Blocks> {
         let widest = (top..(top + SIDE).min(size[1])).map(|y| blur_width(size, y)).fold(0.0, f64::max);
         (keeps && widest <= KEPT_WIDTH).then(|| source.row((top / SIDE) as usize))
     };
-    packed(size, &rows, &kept)
+    packed(size, (source.size[0] as usize, &rows), &kept)
 }
 
 impl CompressedMap {
-    /// The map of a file's picture: of its largest level that has the size of a map's, or else of its largest, reduced.
-    /// Levels that the file lacks are made. Errors: OUT_OF_MEMORY.
+    /// The map of a file's picture: of its level that is as large as the map of such a picture, or else of its largest,
+    /// reduced. Levels that the file lacks are made. Errors: OUT_OF_MEMORY.
     pub fn new(file: BlockFile) -> Result<Self> {
-        let fitting = file.levels.iter().position(|level| finest_size(level.size) == level.size);
+        let wanted = file.levels.first().map(|largest| finest_size(largest.size));
+        let fitting = file.levels.iter().position(|level| Some(level.size) == wanted);
         let mut made: Vec<Blocks> = Vec::with_capacity(u32::BITS as usize);
         if let (None, Some(largest)) = (fitting, file.levels.first()) {
             made.push(filtered(largest, finest_size(largest.size), false)?);
@@ -149,7 +147,7 @@ impl CompressedMap {
             let rows = || -> Result<Rows<'_>> {
                 Ok(Box::new(|y, out| out.iter_mut().zip(level.row(y)).for_each(|(out, texel)| *out = unpack(*texel))))
             };
-            packed(level.size, &rows, &|_| None)
+            packed(level.size, (level.size[0] as usize, &rows), &|_| None)
         });
         Ok(Self { levels: levels.collect::<Result<_>>()? })
     }
@@ -170,11 +168,11 @@ fn unpacked(blocks: &Blocks) -> Result<Level> {
     let [width, height] = blocks.size.map(|side| side as usize);
     let mut texels = filled(width * height, 0, "the texels of a sky map")?;
     let bands = Mutex::new(texels.chunks_mut(BAND * SIDE as usize * width).zip((0..).step_by(BAND * SIDE as usize)));
-    on_threads(threads_for(width * height), &|| {
+    on_threads(threads_for(width * height, width), &|| {
         let mut reader = RowReader::new(blocks)?;
         loop {
             let Some((band, first)) = bands.lock().next() else { return Ok(()) };
-            band.chunks_mut(width).zip(first..).try_for_each(|(texels, y)| reader.read_texels(y, texels))?;
+            band.chunks_mut(width).zip(first..).for_each(|(texels, y)| reader.read_texels(y, texels));
         }
     })?;
     Ok(Level { size: blocks.size, texels })
@@ -207,7 +205,7 @@ mod tests {
         let finest = &map.levels()[0];
         for row in 0..16 {
             let kept = finest.row(row) == given.row(row);
-            // Rows 0 to 3 of 64 lie beyond 79 degrees; rows 15 to 48 within 47.
+            // Rows 0 to 2 of blocks lie beyond 56 degrees from the equator, rows 4 to 11 within 45.
             assert!(!kept || (3..13).contains(&row), "row {row}");
             assert!(kept || !(4..12).contains(&row), "row {row}");
         }
@@ -258,19 +256,26 @@ mod tests {
                 let rms = (squares / (3 * a.texels.len()) as f64).sqrt();
                 // Waves of few texels are not smooth: a block has one line of colours, however much they differ.
                 let coarse = a.size[1] < 100;
-                assert!(rms < if coarse { 0.25 } else { 0.02 }, "{size:?} {:?}: {rms}", a.size);
+                assert!(rms < if coarse { 0.4 } else { 0.02 }, "{size:?} {:?}: {rms}", a.size);
                 assert!((sums[1] / sums[0] - 1.0).abs() < if coarse { 0.03 } else { 0.003 }, "{:?}: {sums:?}", a.size);
             }
         }
     }
 
-    /// Pictures that are no maps are made ones: more rows than a map's, or fewer columns than rows.
+    /// Pictures whose size no map has are resampled: those of more rows than a map's, or of fewer columns than rows.
     #[test]
     fn tall_pictures_are_reduced() {
-        for (size, wanted) in [([4, 2048], [1024, 1024]), ([8, 64], [64, 64])] {
-            let map = CompressedMap::new(file(size, true)).unwrap();
-            assert_eq!(map.levels()[0].size, wanted);
-            assert_eq!(map.levels().last().unwrap().size, [1, 1]);
+        for (size, wanted) in [([4, 2048], [1024, 1024]), ([8, 64], [64, 64]), ([64, 16], [64, 16])] {
+            for all_levels in [false, true] {
+                let mut given = file(size, true);
+                while all_levels && given.levels.last().is_some_and(|level| level.size != [1, 1]) {
+                    let next = given.levels.last().unwrap().size.map(|side| (side / 2).max(1));
+                    given.levels.extend(file(next, true).levels);
+                }
+                let map = CompressedMap::new(given).unwrap();
+                assert_eq!(map.levels()[0].size, wanted);
+                assert_eq!(map.levels().last().unwrap().size, [1, 1]);
+            }
         }
     }
 }

@@ -18,6 +18,8 @@ use std::f64::consts::PI;
 /// Rows that a thread takes at a time, and texels of a level that are worth a thread.
 const BAND: usize = 16;
 const TEXELS_A_THREAD: usize = 1 << 15;
+/// Columns of the rows that all threads together keep, at about 100 bytes each.
+const MOST_COLUMNS: usize = 1 << 22;
 
 /// Largest level, texels: larger pictures are reduced to it.
 pub const MAX_MAP_SIZE: [u32; 2] = [16384, 8192];
@@ -179,7 +181,7 @@ impl Level {
     fn fill(&mut self, source: &Source<'_>, rows: std::ops::Range<u32>) -> Result<()> {
         let (size, width) = (self.size, self.size[0] as usize);
         let texels = &mut self.texels[rows.start as usize * width..rows.end as usize * width];
-        let threads = threads_for(texels.len());
+        let threads = threads_for(texels.len(), source.size[0] as usize);
         let bands = Mutex::new(texels.chunks_mut(BAND * width).zip((rows.start..).step_by(BAND)));
         on_threads(threads, &|| {
             let mut scratch = Scratch::new(source.size[0] as usize, width)?;
@@ -200,15 +202,16 @@ impl Level {
     }
 }
 
-/// How many threads so many texels of a level are worth, at most one a core.
-pub(super) fn threads_for(texels: usize) -> usize {
+/// How many threads so many texels of a level are worth, at most one a core, and no more than may have the memory for
+/// rows of so many columns.
+pub(super) fn threads_for(texels: usize, columns: usize) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    cores.min(texels / TEXELS_A_THREAD)
+    cores.min(texels / TEXELS_A_THREAD).min(MOST_COLUMNS / columns.max(1))
 }
 
 /// Runs `work` on this thread and beside it on others, so many in all: each takes parts of the whole until none is
-/// left. Threads are of their own: in a pool, one that waits for a map could come to wait for itself. Errors: those of
-/// `work` on this thread, which another that fails leaves its parts to.
+/// left. A thread that fails must do so before it takes a part, and this one does the rest. Threads are of their own:
+/// in a pool, one that waits for a map could come to wait for itself. Errors: those of `work` on this thread.
 pub(super) fn on_threads(threads: usize, work: &(dyn Fn() -> Result<()> + Sync)) -> Result<()> {
     let own = || {
         begin_own_thread();

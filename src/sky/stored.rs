@@ -6,6 +6,7 @@ use super::compressed::CompressedMap;
 use super::map::SkyMap;
 use crate::error::{Error, Result};
 use crate::image::{self, FromFile, ImageRef, KeptFile, Layout};
+use parking_lot::Mutex;
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -14,6 +15,8 @@ pub struct StoredMap {
     stored: Stored,
     /// The blocks in texels, once a tracer has asked for them.
     unpacked: OnceLock<SkyMap>,
+    /// Held while they are unpacked.
+    unpacking: Mutex<()>,
 }
 
 enum Stored {
@@ -32,27 +35,31 @@ impl std::fmt::Debug for StoredMap {
 
 impl From<SkyMap> for StoredMap {
     fn from(map: SkyMap) -> Self {
-        Self { stored: Stored::Texels(map), unpacked: OnceLock::new() }
+        Self::of(Stored::Texels(map))
     }
 }
 
 impl From<CompressedMap> for StoredMap {
     fn from(map: CompressedMap) -> Self {
-        Self { stored: Stored::Blocks(map), unpacked: OnceLock::new() }
+        Self::of(Stored::Blocks(map))
     }
 }
 
 impl StoredMap {
+    fn of(stored: Stored) -> Self {
+        Self { stored, unpacked: OnceLock::new(), unpacking: Mutex::new(()) }
+    }
+
     /// The map in texels, which is kept from the first call on. Errors: OUT_OF_MEMORY.
     pub fn texels(&self) -> Result<&SkyMap> {
         let blocks = match &self.stored {
             Stored::Texels(map) => return Ok(map),
             Stored::Blocks(blocks) => blocks,
         };
+        let _unpacking = self.unpacking.lock();
         if let Some(map) = self.unpacked.get() {
             return Ok(map);
         }
-        // Another thread may have been quicker: then its map stays.
         let map = blocks.unpacked()?;
         Ok(self.unpacked.get_or_init(|| map))
     }

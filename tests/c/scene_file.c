@@ -159,7 +159,7 @@ static void what_moves(BhrContext *context) {
     CHECK(width == 1920 && height == 1080 && count == 1 && rate == 24.0, "%u pictures", (unsigned)count);
 }
 
-/* The map of the scene, whose picture is given, comes back from blocks; saved again, the file is the same. */
+/* The scene's map comes back from blocks with about the frame `before`; saved and read again, it gives that frame. */
 static void maps_in_blocks(BhrContext *context, const unsigned char *before) {
     static unsigned char after[WATCH_WIDTH * WATCH_HEIGHT * 4], again[sizeof after];
     double               sum = 0.0;
@@ -174,7 +174,7 @@ static void maps_in_blocks(BhrContext *context, const unsigned char *before) {
     for (size_t i = 0; i < sizeof after; i++) {
         sum += abs(after[i] - before[i]);
     }
-    /* Every texel has another colour, and a block one line of them. */
+    /* Neighbouring texels differ strongly, and a block has one line of colours. */
     CHECK(sum / sizeof after < 20.0, "blocks differ from texels by %g of 255", sum / sizeof after);
     text = saved(context);
     CHECK(strstr(text, "/map.ktx2\"") != NULL, "the text does not name the blocks:\n%s", text);

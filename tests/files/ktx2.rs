@@ -100,7 +100,7 @@ pub fn pictures() -> Vec<(&'static str, File)> {
     let floats = |with: &'static [f32]| {
         move |light: [f32; 3]| light.iter().chain(with).flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>()
     };
-    // Numbers here have few bits, and fit the exponent of 16.
+    // The light is in multiples of 1 / 32 below 16: exact with the exponent 19.
     let shared = |light: [f32; 3]| {
         let [r, g, b] = light.map(|v| (v * 32.0) as u32);
         (r | g << 9 | b << 18 | 19 << 27).to_le_bytes().to_vec()
@@ -129,17 +129,35 @@ pub fn map(size: [u32; 2], levels: usize, compressed: bool) -> File {
     File { levels: levels.collect(), compressed, ..File::of(Format::BC6H_UFLOAT_BLOCK, size, Vec::new()) }
 }
 
-pub fn seeds() -> Vec<Seed> {
+/// Files of 8-bit codes, which count up from 0.
+pub fn codes() -> Vec<(&'static str, File)> {
     let codes = (0..90_u8).collect::<Vec<_>>();
-    let mut files = pictures();
-    files.extend([
+    let wide = File { primaries: Some(ColorPrimaries::BT2020), ..File::of(Format::R8G8B8_SRGB, [6, 5], codes.clone()) };
+    vec![
         ("codes", File::of(Format::R8G8B8_SRGB, [6, 5], codes.clone())),
         ("codes with alpha", File::of(Format::R8G8B8A8_SRGB, [4, 5], codes[..80].to_vec())),
         ("blue codes", File::of(Format::B8G8R8A8_SRGB, [4, 5], codes[..80].to_vec())),
-        (
-            "wide codes",
-            File { primaries: Some(ColorPrimaries::BT2020), ..File::of(Format::R8G8B8_SRGB, [6, 5], codes.clone()) },
-        ),
+        ("wide codes", wide),
+    ]
+}
+
+/// The end of the block in this column and row of [`numbered`].
+pub fn number(column: usize, row: usize) -> u128 {
+    300 + 10 * column as u128 + 100 * row as u128
+}
+
+/// Blocks that have each a light of their own.
+pub fn numbered(size: [u32; 2], orientation: &'static str) -> File {
+    let [across, down] = size.map(|side| side.div_ceil(4) as usize);
+    let all = (0..down).flat_map(|row| (0..across).flat_map(move |column| blocks(1, number(column, row))));
+    File { orientation, ..File::of(Format::BC6H_UFLOAT_BLOCK, size, all.collect()) }
+}
+
+pub fn seeds() -> Vec<Seed> {
+    let mut files = pictures();
+    files.extend(codes());
+    files.extend([
+        ("turned blocks", numbered([10, 7], "ru")),
         ("blocks", map([32, 16], 1, false)),
         ("blocks of all levels", map([32, 16], 6, false)),
         ("compressed blocks", map([32, 16], 6, true)),

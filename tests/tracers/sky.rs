@@ -77,7 +77,8 @@ fn gpu_and_cpu_pictures_agree() {
 }
 
 /// A map in blocks shows what its texels do, on both tracers, read by the device itself and unpacked for it: of a size
-/// that devices take in blocks, and of one that they do not. In blocks it takes a quarter of the memory.
+/// that devices take in blocks, and of one that they do not. Where a sampler reads blocks, a map takes a quarter of the
+/// memory.
 #[test]
 fn maps_in_blocks_are_their_texels() {
     for size in [[512, 256], [510, 254]] {
@@ -102,7 +103,7 @@ fn maps_in_blocks_are_their_texels() {
             }
             if tracer == "gpu" {
                 let saved = bytes.map(|[texels, blocks]| texels.saturating_sub(blocks));
-                // Three of the four bytes of each texel of 512 x 256, and of its levels.
+                // A texel takes 4 bytes, in blocks 1: 3 saved, times 4 / 3 for the levels.
                 let wanted = if size[0] == 512 { 512 * 256 * 4 } else { 0 };
                 assert_eq!(saved[0], 0, "without a sampler: {bytes:?}");
                 assert!(saved[1].abs_diff(wanted) < 100, "{size:?}: {bytes:?}");

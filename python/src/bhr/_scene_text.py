@@ -104,8 +104,8 @@ class SceneText:
         self._targets.pop("sky", None)
 
     def save_sky_map(self, path: str | os.PathLike[str]) -> None:
-        """Writes the map that `set_sky_map` gave to a .ktx2 file in blocks of BC6H, which `set_sky_map` reads without
-        work on its texels, and which takes a quarter of the memory in the context and on the GPU."""
+        """Writes the map that `set_sky_map` gave to a .ktx2 file in blocks of BC6H, which `set_sky_map` and GPUs take
+        as they are: a quarter of the memory of texels. docs/maps.md says how exact they are."""
         self._call(lib.bhr_save_sky_map, _path(path))
 
     def set_film_lut(self, lut: str | os.PathLike[str] | npt.NDArray[Any] | None) -> None:

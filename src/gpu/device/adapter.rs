@@ -207,8 +207,8 @@ pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// A device is opened with timestamps, mappable storage buffers and textures in blocks (BC) if the adapter has them,
-/// and no other feature; one that is the host's without blocks, which hosts of earlier versions did not turn on.
+/// A device has timestamps, mappable storage buffers and BC textures if the adapter has them, and no other feature. The
+/// host's own devices do without BC, because hosts written for earlier versions do not enable it.
 pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter, is_hosts: bool) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let limits = wgpu::Limits {

@@ -225,9 +225,10 @@ impl Device {
         self.raw.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS)
     }
 
-    /// Whether textures may be in blocks of BC6H.
+    /// Whether textures may be in blocks of BC6H. Not by OpenGL, to which wgpu hands rows of blocks as long as uploads
+    /// have them, with their padding, and which takes only those without.
     pub fn has_blocks(&self) -> bool {
-        self.raw.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC)
+        self.backend != Backend::Gl && self.raw.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC)
     }
 
     /// Nanoseconds per tick of a timestamp.

@@ -19,9 +19,9 @@ pub(super) const MAGIC: [u8; 8] = [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xb
 /// Levels of blocks begin at multiples of this.
 const ALIGNMENT: u64 = 16;
 
-/// The description of texels of BC6H, unsigned, linear, of Rec. 709, in the words of the specification's section 3.9:
-/// its length; a basic block of version 2 and 40 bytes; model 133, primaries 1, curve 1; blocks of 4 x 4 texels and 16
-/// bytes; one sample of 128 bits that are floats, from 0 to 1.0.
+/// The description of texels of BC6H, unsigned, linear, of Rec. 709, in the words of the specification's "Data Format
+/// Descriptor": its length; a basic block of version 2 and 40 bytes; model 133, primaries 1, curve 1; blocks of 4 x 4
+/// texels and 16 bytes; one sample of 128 bits that are floats, from 0 to 1.0.
 const DESCRIPTION: [[u8; 4]; 11] = [
     44_u32.to_le_bytes(),
     [0; 4],

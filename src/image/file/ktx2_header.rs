@@ -17,10 +17,9 @@ use std::io::{Read, Seek, SeekFrom};
 pub(super) const FILTERED: &str = "bhrFiltered";
 /// Longest description of texels, and longest list of keys and values, that are read.
 const MAX_SECTION: u32 = 64 << 10;
-/// More levels than the largest side has halves.
+/// Most levels that are read; a side of 2^20 has only 21.
 const MAX_LEVELS: u32 = 32;
-/// Where primaries and curve stand in a basic description of texels, after its length and its head, and its shortest
-/// length.
+/// Offsets of primaries and curve in the description of texels, from its total size on, and its least length.
 const PRIMARIES_AT: usize = 13;
 const CURVE_AT: usize = 14;
 const BASIC_BYTES: u32 = 28;
@@ -33,10 +32,11 @@ pub(super) enum Texels {
         channels: usize,
         blue_first: bool,
     },
-    /// Half floats, and floats.
+    /// Half floats, of so many channels.
     Half {
         channels: usize,
     },
+    /// Floats, of so many channels.
     Float {
         channels: usize,
     },
@@ -101,18 +101,18 @@ pub(super) struct Contents {
     pub texels: Texels,
     /// The levels, the largest first: at least one.
     pub levels: Vec<Place>,
-    /// They are compressed by Zstandard.
+    /// Whether levels are compressed by Zstandard.
     compressed: bool,
-    /// The first row is the lowest.
+    /// Whether the first row is the lowest.
     pub bottom_up: bool,
     pub filtered: bool,
-    /// To light of Rec. 709; `None`: the file's is that.
+    /// Converts to Rec. 709; `None` where the file's light is that already.
     pub matrix: Option<Matrix>,
 }
 
 /// The largest window of a compressed level: that of zstd to its level 19.
 const MAX_WINDOW: u64 = 8 << 20;
-/// A decoder takes no more than this beside its output: its window, in a ring that is copied as it doubles.
+/// The most that a decoder takes beside its output: its window is a ring buffer that is copied as it doubles.
 const DECODER_BYTES: u64 = 4 * MAX_WINDOW;
 
 impl Contents {
@@ -227,12 +227,13 @@ fn section(file: &mut (impl Read + Seek), offset: u32, length: u32) -> Result<Ve
     Ok(bytes)
 }
 
-/// A byte of a description of texels.
+/// A byte of a description of texels; 0 where that is no basic one of Khronos's.
 fn word(described: &[u8], at: usize) -> u8 {
-    described.get(at).filter(|_| described.len() as u32 >= BASIC_BYTES).copied().unwrap_or(0)
+    let is_basic = described.len() as u32 >= BASIC_BYTES && described.get(4..8) == Some(&[0; 4]);
+    described.get(at).filter(|_| is_basic).copied().unwrap_or(0)
 }
 
-/// Errors: UNSUPPORTED for numbers that are not linear light. The format of codes says that they are of sRGB.
+/// Errors: UNSUPPORTED for numbers that are not linear light. 8-bit texels are sRGB by their format.
 fn check_curve(described: &[u8], texels: Texels) -> Result<()> {
     match (texels, TransferFunction::new(word(described, CURVE_AT))) {
         (Texels::Srgb8 { .. }, _) | (_, None | Some(TransferFunction::Linear)) => Ok(()),

@@ -146,11 +146,12 @@ fn upload_stored(device: &Device, map: &StoredMap, for_sampler: bool) -> Result<
             Some(kept) => kept,
             None => (number, RowReader::new(level)?),
         });
-        rows.zip(texels.chunks_mut(level.size[0] as usize)).try_for_each(|(y, row)| rows_of.read_texels(y, row))
+        rows.zip(texels.chunks_mut(level.size[0] as usize)).for_each(|(y, row)| rows_of.read_texels(y, row));
+        Ok(())
     })
 }
 
-/// `None`: the device has no such textures, or none of this size.
+/// `None` where the device has no such textures, or where four does not divide a side of the finest level that fits.
 fn upload_blocks(device: &Device, map: &CompressedMap) -> Result<Option<MapTexture>> {
     let limit = device.limits().max_texture_dimension_2d;
     let levels = map.levels();
