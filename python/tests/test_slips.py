@@ -153,6 +153,7 @@ def test_skies_come_from_files(ctx, tmp_path):
     assert bhr.load(tmp_path / "sky.ktx2").array.shape == stripes.shape
     with pytest.raises(bhr.Error, match=r"\.ktx2 files"):
         ctx.save_sky_map(tmp_path / "sky.png")
+    ctx.set_sky_map(stripes)
     with pytest.raises(bhr.FileError, match=r"missing\.jpg"):
         ctx.set_sky_map("missing.jpg")
     (tmp_path / "x.jpg").write_bytes(b"\xff\xd8\xff\xe0\0\x10JFIF\0" + bytes(100))

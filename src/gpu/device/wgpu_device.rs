@@ -132,7 +132,8 @@ struct Health {
 }
 
 impl Device {
-    /// Opens a device with the features of [`device_descriptor`].
+    /// Opens a device with timestamps, mappable storage buffers and BC textures if the adapter has them, and the device
+    /// is not the host's, and no other feature.
     ///
     /// A GL device is for threads without a GL context: wgpu leaves none current on the thread of a call, and where
     /// another interface's is current (GLX beside EGL) it panics, when the device is dropped too. `GlTracer`
