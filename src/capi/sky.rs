@@ -148,6 +148,7 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
 
 /// Gives BHR_SKY_MAP the picture in a file that bhr_image_load reads, as bhr_set_sky_map does one in memory. The path
 /// is kept, so that bhr_scene_save can name it; a file that is given again and has not changed is not read again.
+/// Blocks of BC6H in a .ktx2 file stay blocks, in the context and on most GPUs (docs/maps.md).
 /// Errors: those of bhr_image_load and bhr_set_sky_map, after which the map is as it was. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *const c_char) -> BhrStatus {
@@ -165,8 +166,9 @@ pub unsafe extern "C" fn bhr_set_sky_map_file(context: *mut BhrContext, path: *c
 
 /// Writes the map that bhr_set_sky_map or bhr_set_sky_map_file gave to a .ktx2 file in blocks of BC6H with all its
 /// levels: 1.34 bytes a texel. bhr_set_sky_map_file and GPUs take the blocks as they are; docs/maps.md says how exact
-/// they are. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE
-/// without a map, or with one on the GPU (bhr_interop.h); UNSUPPORTED for another ending of the path; IO. @since 0.2.0
+/// they are. A map of 16384 x 8192 takes some seconds. Errors: INVALID_STATE without a map, or with one on the GPU
+/// (bhr_interop.h); UNSUPPORTED for another ending of the path; IO, after which an older file is as it was.
+/// @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_save_sky_map(context: *const BhrContext, path: *const c_char) -> BhrStatus {
     // SAFETY: NULL or a C string, by the header's conventions.

@@ -105,6 +105,7 @@ pub(super) struct Contents {
     compressed: bool,
     /// Whether the first row is the lowest.
     pub bottom_up: bool,
+    /// Whether rows are filtered as those of sky maps are.
     pub filtered: bool,
     /// Converts to Rec. 709; `None` where the file's light is that already.
     pub matrix: Option<Matrix>,
