@@ -49,7 +49,7 @@ fn two_hundred_devices_leave_no_memory_behind() {
     }
     let before = resident();
     // Everyday fewer; what each may leave is the same.
-    let (more, again): (u32, u64) = if runs_all() { (180, 20) } else { (60, 5) };
+    let (more, again): (u32, u64) = if runs_all() { (180, 20) } else { (20, 3) };
     let mean = (0..more).map(|_| open_use_close()).sum::<Duration>() / more;
     let grown = resident().saturating_sub(before);
     let start = Instant::now();

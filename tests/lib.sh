@@ -16,6 +16,8 @@ export CARGO_TARGET_DIR=$target
 
 # Whether long soaks run: tests/run all.
 runs_all() { [ "${BHR_TESTS_ALL:-}" = 1 ]; }
+# in_all COMMAND...: a test of tests/run all. The head of tests/run says what stands for it everyday.
+in_all() { ! runs_all || "$@"; }
 
 # The library that C programs and examples link. It is the one that cargo builds for the Rust tests, optimised, with
 # every check on and with symbols, so that nothing has to be built twice; with the long soaks it is the release

@@ -306,7 +306,7 @@ fn a_large_map_with_unused_channels_is_read() {
 #[ignore = "run by the tests below, in a process of its own"]
 fn child_reads_faulty_files() {
     let kind = std::env::var("BHR_FILES_KIND").unwrap();
-    let count = count_from("BHR_FILES_COUNT", 1000, 1000);
+    let count = count_from("BHR_FILES_COUNT", 300, 1000);
     let seeds = seeds(&kind);
     let folder = Folder::new();
     static PLACES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());

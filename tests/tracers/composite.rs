@@ -187,8 +187,8 @@ fn spheres_at_their_lensed_places_are_where_rays_see_them() {
         renderer.scene = Scene { disk: None, ..Scene::plain() };
         renderer.scene.hole.spin = spin;
         for (j, (r, fov_y, centre, radius)) in sights.into_iter().enumerate() {
-            // Everyday each sight at one spin.
-            if !runs_all() && (i + j) % 2 == 1 {
+            // Everyday each second sight, at one spin or the other.
+            if !runs_all() && (i * 3 + j) % 4 != 0 {
                 continue;
             }
             let position = DVec3::new(0.0, -r, 0.0);

@@ -90,7 +90,7 @@ const FIELDS: [f64; 5] = [1e-6, 0.3, 1.0, 3.0, 3.1];
 fn frames_at_the_extremes() {
     let mut random = Random(11);
     let mut renderers = both();
-    for scene in 0..count_from("BHR_EXTREME_SCENES", 30, 1000) {
+    for scene in 0..count_from("BHR_EXTREME_SCENES", 12, 1000) {
         let (spin, mass) = (random.pick(&SPINS), random.pick(&MASSES));
         let motion = random.pick(&[Motion::Static, Motion::FreeFall, Motion::Velocity]);
         let inside = spin == 0.0 && motion == Motion::FreeFall && random.next() < 0.5;
@@ -134,7 +134,7 @@ fn frames_at_the_extremes() {
 fn table_frames_at_the_extremes() {
     let mut random = Random(13);
     let mut renderers = both();
-    for scene in 0..count_from("BHR_EXTREME_SCENES", 15, 1000) {
+    for scene in 0..count_from("BHR_EXTREME_SCENES", 6, 1000) {
         let (spin, mass) = (random.pick(&SPINS), random.pick(&MASSES));
         let spin = if random.next() < 0.3 { 0.0 } else { spin };
         let motion = random.pick(&[Motion::Static, Motion::FreeFall, Motion::Velocity]);

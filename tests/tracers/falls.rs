@@ -77,7 +77,7 @@ fn random_cameras_inside_give_numbers() {
     for (name, mut renderer) in both() {
         let mut random = Random(20_261_128);
         let mut lit = 0;
-        let count = count_from("BHR_TEST_CAMERAS_INSIDE", 24, 100_000);
+        let count = count_from("BHR_TEST_CAMERAS_INSIDE", 8, 100_000);
         for i in 0..count {
             let [a, b, c, d] = [0; 4].map(|_| if runs_all() { random.pick(&looks) } else { looks[i % looks.len()] });
             let (projection, effects, has_disk, has_matter) = (a.0, b.1, c.2, d.3);

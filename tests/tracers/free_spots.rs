@@ -105,7 +105,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 #[test]
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
-    for (name, scene) in scenes() {
+    // Everyday a spot that falls in, one that leaves, and one that is seen from inside.
+    for (_, (name, scene)) in scenes().into_iter().enumerate().filter(|(i, _)| runs_all() || i % 2 == 1) {
         let format = if scene.view == View::Light { PixelFormat::Rgba32F } else { PixelFormat::R32F };
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| {
             renderer.scene = scene.clone();
@@ -121,11 +122,12 @@ fn the_tracers_agree() {
 
 /// The light of a spot that falls in goes without a jump, and at last there is none.
 #[test]
+#[ignore = "in tests/run all; everyday: both tracers agree about such a spot"]
 fn a_spot_that_falls_in_fades_away() {
     let mut renderer = cpu();
     let (_, falling) = scenes().into_iter().find(|(name, _)| *name == "falling in").expect("a scene");
-    let step = if runs_all() { 0.5 } else { 4.0 };
-    let light = (0..(80.0 / step) as u32).map(|i| {
+    let step = 0.5;
+    let light = (0..160).map(|i| {
         renderer.scene = Scene { time: f64::from(i) * step, ..falling.clone() };
         light_and_middle(&floats(&picture(&mut renderer, PixelFormat::R32F, SIZE, None, false))).0
     });

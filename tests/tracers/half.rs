@@ -140,9 +140,9 @@ fn the_tracers_agree() {
 
 /// Where nothing shines in the plane, pixels look up what is behind the matter of the blocks: as they trace it, without
 /// and with spin, in pictures of several samples, in frames with a border, in views, and in parts with the bytes of the
-/// whole. Everyday four scenes, because kernels for each take lavapipe a long time to compile: views, fisheyes, falling
-/// cameras and transparent pictures come from the same lookup.
+/// whole.
 #[test]
+#[ignore = "in tests/run all; everyday: the tracers agree at half resolution, tables or not"]
 fn the_sky_behind_blocks_is_looked_up() {
     let mut gpu = gpu();
     let named = |name: &str| scenes().into_iter().find(|(found, _)| *found == name).expect("a scene").1;
@@ -165,9 +165,6 @@ fn the_sky_behind_blocks_is_looked_up() {
         ("optical depth", depth),
     ];
     for (name, scene) in all {
-        if !runs_all() && !["hot spots", "a cube", "without spin, two samples", "structure"].contains(&name) {
-            continue;
-        }
         let size = if name == "a cube" { [240, 40] } else { [160, 90] };
         let [traced, looked_up] = [LensTables::Never, LensTables::Always].map(|tables| {
             gpu.scene = half(&scene);

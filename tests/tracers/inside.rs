@@ -77,8 +77,8 @@ fn seen(renderer: &mut Renderer, format: PixelFormat, set: &dyn Fn(&mut Scene)) 
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     for (i, (spin, place, motion)) in places().into_iter().enumerate() {
-        // Everyday one place with each kind of matter, and all kinds of motion.
-        if !runs_all() && i > 4 && i != 11 {
+        // Everyday four places, each with another kind of matter.
+        if !runs_all() && i > 2 && i != 11 {
             continue;
         }
         let (name, shines) = matter()[i % matter().len()];
@@ -117,7 +117,7 @@ fn tables_show_what_rays_do() {
         for (kind, (name, shines)) in shown.into_iter().enumerate() {
             // From within the plane disks are traced.
             let edge_on = kind > 0 && place[1].cos().abs() < 0.03;
-            if edge_on || (!runs_all() && (i > 8 || i % 3 != kind)) {
+            if edge_on || (!runs_all() && (i > 4 || i % 3 != kind)) {
                 continue;
             }
             let seen_by = |renderer: &mut Renderer, tables: LensTables| {
@@ -227,6 +227,7 @@ fn unlike(a: &[f32], b: &[f32]) -> Vec<bool> {
 /// alone is seen on both sides, and no edge. More rays for its pixels would show single stars in a line through the
 /// even glow of all. Edges of the disk stay refined.
 #[test]
+#[ignore = "in tests/run all; everyday: the tracers agree inside, and a fall has no seam"]
 fn no_edge_runs_along_the_horizon() {
     const FULL: [u32; 2] = [320, 180];
     let around = |x: i32, reach: i32, size: u32| (x - reach).max(0)..(x + reach + 1).min(size as i32);

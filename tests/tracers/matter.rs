@@ -335,7 +335,7 @@ fn any_spot(random: &mut Random, time: f64) -> HotSpot {
 fn random_rays_through_random_matter_give_numbers() {
     let mut random = Random(20_261_123);
     let mut renderer = cpu();
-    let rays = count_from("BHR_TEST_TRANSFER_RAYS", 2000, 1_000_000);
+    let rays = count_from("BHR_TEST_TRANSFER_RAYS", 700, 1_000_000);
     let (mut seen, mut escaped, mut count) = (0, 0, 0);
     while count < rays {
         let spin = random.pick(&[0.0, 0.5, -0.9, 0.998, -0.998]);

@@ -3,6 +3,7 @@
 //! is tested in src/film/metering.rs. The GPU is whatever adapter comes first; without one the tests fail.
 
 use crate::frames::{both, picture};
+use crate::random::runs_all;
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
@@ -36,8 +37,12 @@ fn metered(renderer: &mut Renderer, size: [u32; 2]) -> (Vec<u8>, f64) {
 
 #[test]
 fn gpu_and_cpu_pictures_agree() {
-    for size in [[192, 108], [401, 223]] {
-        for (name, set) in SCENES {
+    for (i, size) in [[192, 108], [401, 223]].into_iter().enumerate() {
+        for (j, (name, set)) in SCENES.into_iter().enumerate() {
+            // Everyday each scene in one size.
+            if !runs_all() && (i + j) % 2 == 1 {
+                continue;
+            }
             let [(cpu, cpu_ev), (gpu, gpu_ev)] = both().map(|(_, mut renderer)| {
                 set(&mut renderer.scene);
                 metered(&mut renderer, size)

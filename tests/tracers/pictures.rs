@@ -193,19 +193,15 @@ fn turbulence_shows_its_seed_and_its_time() {
     }
 }
 
-/// Everyday half of the scenes, which together have nearly every setting.
+/// Everyday a third of the scenes, which together have nearly every setting.
 #[test]
 fn gpu_and_cpu_pictures_agree() {
     let size = [192, 108];
     let everyday = [
-        "edge-on",
         "r = 3",
-        "orbit",
         "free fall at a spinning horizon",
         "retrograde, translucent, half the effects, fast camera, another axis and mass",
-        "plunging with spin",
         "plunging, from inside the horizon",
-        "turbulent",
         "the default scene, looked up",
         "the default scene, looked up, with spin",
         "turbulent, plunging",

@@ -163,7 +163,7 @@ fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
     let most = if runs_all() { MOST_OFF } else { MOST_OFF_EVERYDAY };
     {
         // The GPU's are made sooner; it takes the disk without spin for both.
-        let everyday: &[usize] = if tracer == "cpu" { &[6, 12] } else { &[10, 0, 13] };
+        let everyday: &[usize] = if tracer == "cpu" { &[12] } else { &[10, 0, 13] };
         for (sight, methods) in taken(SIGHTS, everyday) {
             renderer.scene = sight.scene(Method::Auto);
             let truth = whole(&mut renderer, &sight, FINER);
@@ -185,7 +185,7 @@ fn pixels_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
 fn pixels_of_random_views_are_the_means_of_finer_frames(tracer: &str, mut renderer: Lent) {
     let mut random = Random(20_261_129);
     let mut failed = Vec::new();
-    for _ in 0..count_from("BHR_TEST_SIGHTS", 2, 40) {
+    for _ in 0..count_from("BHR_TEST_SIGHTS", 1, 40) {
         let sight = random_sight(&mut random);
         renderer.scene = sight.scene(Method::Auto);
         let truth = whole(&mut renderer, &sight, FINER);

@@ -74,7 +74,7 @@ fn structure_moves_and_nothing_pops() {
             scene.time = time;
             light(&mut renderer, &scene)
         };
-        let frames = (0..24).map(|i| frame(begin + f64::from(i))).collect::<Vec<_>>();
+        let frames = (0..if runs_all() { 24 } else { 10 }).map(|i| frame(begin + f64::from(i))).collect::<Vec<_>>();
         let mut steps = frames.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect::<Vec<_>>();
         steps.sort_by(f64::total_cmp);
         let (median, most) = (steps[steps.len() / 2], steps[steps.len() - 1]);

@@ -358,7 +358,7 @@ fn hot_spots_agree_with_two_other_codes() {
         let name = spot["file"].as_str().unwrap();
         let values = doubles(name);
         let (peak, mut worst, mut shown) = (peak(&values, 1, 0), [0.0_f64; 2], 0.0_f64);
-        for (i, values) in values.chunks(1024).enumerate().step_by(if runs_all() { 1 } else { 3 }) {
+        for (i, values) in values.chunks(1024).enumerate().step_by(if runs_all() { 1 } else { 5 }) {
             renderer.scene = spot_scene(spot, (i % 8) as f64 / 8.0, i < 8);
             let rays = camera_rays(&renderer.scene, 32);
             let found = transfer(&mut renderer, &rays);
@@ -401,6 +401,7 @@ fn contrasts_of_a_hot_spot_are_those_of_slow_and_fast_light() {
 
 /// Pixels of light, in the middle of pictures: against rays that are summed four times as finely.
 #[test]
+#[ignore = "in tests/run all; everyday: pixels agree with two other codes"]
 fn pixels_of_light_are_those_of_single_rays() {
     let mut renderer = cpu();
     let soft = Volume { turbulence: 0.0, ..Volume::default() };

@@ -238,7 +238,7 @@ fn no_pixel_of_the_edge_is_dark() {
 }
 
 /// I_nu and the optical depth, of every pixel. Structure is rough: the tracers' steps, and so the places that they ask,
-/// differ. Everyday each scene has one view, with structure or without, by turns.
+/// differ. Everyday five scenes have one view each, with structure or without, by turns.
 #[test]
 fn the_views_of_matter_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
@@ -248,7 +248,7 @@ fn the_views_of_matter_agree() {
             .flat_map(|view| [(view, 0.0, 2e-3_f32), (view, 1.0, 2e-2)])
         {
             let turn = 2 * usize::from(view == View::OpticalDepth) + usize::from(turbulence == 0.0);
-            if !runs_all() && turn != i % 4 {
+            if !runs_all() && (turn != i % 4 || i > 4) {
                 continue;
             }
             let mut scene = Scene { view, ..scene.clone() };

@@ -4,6 +4,7 @@
 
 use super::spike_tests::{Field, point, spread};
 use super::*;
+use crate::random::runs_all;
 
 fn flare(flare_ghosts: u32) -> Optics {
     Optics { flare: 1.0, flare_ghosts, ..Optics::default() }
@@ -39,7 +40,9 @@ fn reflected([x, y]: [u32; 2], [width, height]: [u32; 2]) -> f64 {
 
 #[test]
 fn light_is_lost_towards_the_border_only() {
-    for frame in [[160, 90], [320, 180], [222, 333]] {
+    // Everyday the smallest: what a ghost loses depends on where its light is, in halves of the frame.
+    let frames = [[160, 90], [320, 180], [222, 333]];
+    for frame in frames.into_iter().take(if runs_all() { 3 } else { 1 }) {
         let mut worst = 0.0_f64;
         for (ghosts, blades) in [(0, 0), (8, 3), (1, 5)] {
             let optics = Optics { spike_blades: blades, spike_angle: 0.3, ..flare(ghosts) };

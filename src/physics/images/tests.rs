@@ -124,7 +124,7 @@ fn rays_of_images_pass_their_points_without_spin() {
 
 #[test]
 fn rays_of_images_pass_their_points_with_spin() {
-    let cases = cases(count(50_000), &SPINS, 1, [2.0, 1.0], 2);
+    let cases = cases(count(25_000), &SPINS, 1, [2.0, 1.0], 2);
     let [lost, missed] = lost_and_missed(&cases);
     assert_eq!(missed, 0);
     assert!(lost * 10_000 <= cases.len(), "{lost} lost");
@@ -142,6 +142,7 @@ fn images_about_the_fastest_holes() {
 /// Rain observers between the horizons of spinning holes, and beside the outer one: the rays pass their points within
 /// 1e-9 (1 + conditioning), which is what they turn by as the look does.
 #[test]
+#[ignore = "in tests/run all; everyday: falling observers see points from inside (scene::project)"]
 fn images_inside_the_horizon() {
     let rain = |a: f64, place: DVec3| LocalFrame::rain(a, place).unwrap();
     let all = cases(count(10_000), &[0.9, -0.5, 0.998, 0.1, -0.9999], HIGHEST_ORDER, [0.1, 0.1], 7);
@@ -208,6 +209,7 @@ fn images_do_not_jump_at_the_horizon() {
 
 /// Higher orders, where caustics are wide, and places beside the horizon.
 #[test]
+#[ignore = "in tests/run all; everyday: rays of images pass their points"]
 fn images_that_are_hard_to_find() {
     for (orders, least) in [(0, [0.3, 0.05]), (3, [2.0, 1.0])] {
         let cases = cases(count(24_000), &SPINS, orders, least, 3);

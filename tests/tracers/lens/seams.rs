@@ -128,7 +128,7 @@ fn no_seam() {
     let mut random = Random(37);
     // The lines by tracer, and by whether they were looked up (partly, at least) or integrated.
     let mut found: [[Seams; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) / 5 {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 10, 1000) / 5 {
         let mut scene = random_observer(&mut random, index);
         for (line, (forward, right, width)) in scan_lines(&scene, &mut random).into_iter().enumerate() {
             let fov_y = 2.0 * ((0.5 * width).tan() / f64::from(SAMPLES)).atan();

@@ -81,7 +81,11 @@ fn summed_light_is_the_integral_over_the_isoradials() {
         [(20.0, 0, 50.0), (60.0, 0, 50.0), (80.0, 0, 50.0), (20.0, 1, 16.0), (60.0, 1, 16.0), (80.0, 1, 50.0)]
     {
         let expected = expected(inclination, order);
-        for (tracer, mut renderer) in both() {
+        for (i, (tracer, mut renderer)) in both().into_iter().enumerate() {
+            // Everyday each tracer sums half of the images.
+            if !runs_all() && (order as usize + usize::from(inclination == 60.0) + i) % 2 == 1 {
+                continue;
+            }
             let found = measured(&mut renderer, inclination, width, order);
             println!(
                 "{tracer}: {inclination} degrees, order {order}: {found:.6e} of {expected:.6e}, {:.5}",

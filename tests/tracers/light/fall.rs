@@ -126,6 +126,7 @@ fn change(a: &[f64], b: &[f64]) -> (f64, usize) {
 /// says: through the horizon, and where the tracers change from t to rain time, each follows from those before as well
 /// as others do.
 #[test]
+#[ignore = "in tests/run all; everyday: a fall has no seam (inside.rs), and light left when advanced time says"]
 fn a_fall_has_no_seam() {
     let step = 1e-4;
     for (tracer, mut renderer) in both() {

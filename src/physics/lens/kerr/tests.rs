@@ -10,6 +10,7 @@ use crate::physics::metric::chart;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, isco, redshift};
 use crate::physics::trace::{Fate, Settings, trace};
+use crate::random::runs_all;
 use glam::{DVec3, Vec4};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -307,7 +308,8 @@ fn table_agrees_with_integration() {
 #[test]
 fn rain_tables_agree_with_integration() {
     let mut m = Measured::default();
-    for i in 0..80 {
+    let count = if runs_all() { 80 } else { 24 };
+    for i in 0..count {
         let mut random = Random(100 + i as u64);
         let a = SPINS[i / 2 % SPINS.len()];
         let inner = horizon_inner(a) * (1.0 + 1e-6);
@@ -322,7 +324,7 @@ fn rain_tables_agree_with_integration() {
     m.report("rain");
     println!("{}", m.worst);
     assert!(m.about_direct * 12 < m.about, "{} of {} direct", m.about_direct, m.about);
-    assert!(m.radius.len() > 4000 && m.sky.len() > 6000);
+    assert!(m.radius.len() > 50 * count && m.sky.len() > 75 * count);
     assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
     assert!(quantile(&mut m.radius, 0.99) < 1e-5 && quantile(&mut m.redshift, 0.99) < 2e-5);
     assert!(quantile(&mut m.azimuth, 0.99) < 3e-5 && quantile(&mut m.delay, 0.99) < 3e-5);
