@@ -83,6 +83,7 @@ own_target_folder() {
         for profile in release checked; do
             cargo clean --quiet --profile "$profile" --package libbhr --manifest-path "$root/Cargo.toml" || return 1
         done
+        rm -rf -- "$target/web-quick" || return 1
     fi
     mkdir -p -- "$target" && printf '%s\n' "$root" >"$mark"
 }

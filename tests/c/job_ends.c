@@ -3,8 +3,7 @@
  * the waiter and may cancel; a target is left alone once its job is gone; jobs outlive their context; and no call waits
  * for a job but those that say so. The frames of jobs are in jobs.c.
  *
- * A second argument is for valgrind: "small" leaves out what takes long there, "brief" all but the callbacks and the
- * ends of jobs that are under way. */
+ * A second argument "small" is for valgrind: it leaves out what takes long there. */
 #include "check.h"
 #include "job_scenes.h"
 
@@ -385,34 +384,25 @@ static void nothing_waits(BhrContext *context) {
 
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
-    const int        brief = argc > 2 && strcmp(argv[2], "brief") == 0;
-    const int        small = brief || (argc > 2 && strcmp(argv[2], "small") == 0);
+    const int        small = argc > 2 && strcmp(argv[2], "small") == 0;
     BhrContext      *context = check_context(backend);
     if (small) {
-        slow_samples = brief ? 1 : 16;
+        slow_samples = 16;
     }
-    render_expected(context, brief ? 2 : FLIGHT);
-    if (!brief) {
-        timeouts(context);
-        two_waiters(context);
-    }
+    render_expected(context, FLIGHT);
+    timeouts(context);
+    two_waiters(context);
     progress_is_heard(context);
-    if (!brief) {
-        small_job_is_heard_of(context);
-    }
+    small_job_is_heard_of(context);
     progress_cancels(context);
     destroy_while_running(context, small);
-    if (!brief) {
-        end_queued(context);
-    }
+    end_queued(context);
     if (!small) {
         cancel_large(context);
     }
     outlive_context(backend);
     end_beside_waiter(backend);
-    if (!brief) {
-        nothing_waits(context);
-    }
+    nothing_waits(context);
     bhr_context_destroy(context);
     return check_end();
 }

@@ -47,8 +47,7 @@ as_pictures() {
 # Killed at any moment, its processes as well where a farm does so: all that was noted plays, and in the end the video
 # is the one of an undisturbed run.
 killed_videos() {
-    local folder=$scratch/killed-video i pid noted found seen=0 runs=3
-    ! runs_all || runs=30
+    local folder=$scratch/killed-video i pid noted found seen=0 runs=30
     for ((i = 0; i < runs; i++)); do
         "$bhr" render "$scratch/video.toml" --backend cpu --progress none --keyframes 16 --out "$folder/v.mp4" &
         pid=$!

@@ -306,7 +306,7 @@ fn a_large_map_with_unused_channels_is_read() {
 #[ignore = "run by the tests below, in a process of its own"]
 fn child_reads_faulty_files() {
     let kind = std::env::var("BHR_FILES_KIND").unwrap();
-    let count = count_from("BHR_FILES_COUNT", 300, 1000);
+    let count = count_from("BHR_FILES_COUNT", 1000, 1000);
     let seeds = seeds(&kind);
     let folder = Folder::new();
     static PLACES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
@@ -350,7 +350,7 @@ fn child_reads_faulty_files() {
 
 fn faulty_files(kind: &str) {
     let all = random::runs_all();
-    let count = if all { 100_000 } else { 5_000 };
+    let count = if all { 100_000 } else { 2_000 };
     let environment = [("BHR_FILES_KIND", kind.to_owned()), ("BHR_FILES_COUNT", count.to_string())];
     let out = child("child_reads_faulty_files", &environment);
     println!("{}", out.lines().find(|line| line.starts_with(kind)).unwrap_or_default());

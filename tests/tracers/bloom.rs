@@ -85,7 +85,7 @@ fn gpu_and_cpu_pictures_agree() {
 
 /// A cell of the widest frames gathers from 528 x 528 pixels, of which almost all lie beyond a frame of one row.
 #[test]
-#[ignore = "in tests/run all; everyday: large frames in tests/c"]
+#[ignore = "in tests/run all; everyday: very long frames have bloom"]
 fn the_widest_frames_have_their_light() {
     let size = [1 << 20, 1];
     let pictures = both().map(|(_, mut renderer)| {

@@ -100,7 +100,7 @@ fn shown(renderer: &mut Renderer, camera: Camera, region: Option<Region>) -> Vec
 
 /// Columns of a stereo picture against columns of ordinary ones from exactly where the eye is.
 #[test]
-#[ignore = "in tests/run all; everyday: jobs of two eyes show what images do"]
+#[ignore = "in tests/run all; everyday: eyes are beside the place (scene::eyes), jobs show what images show"]
 fn columns_are_seen_from_their_eyes() {
     let mut pictures = Vec::new();
     for (tracer, mut renderer) in both() {

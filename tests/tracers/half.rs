@@ -142,7 +142,7 @@ fn the_tracers_agree() {
 /// and with spin, in pictures of several samples, in frames with a border, in views, and in parts with the bytes of the
 /// whole.
 #[test]
-#[ignore = "in tests/run all; everyday: the tracers agree at half resolution, tables or not"]
+#[ignore = "in tests/run all; everyday: the tracers agree at half resolution"]
 fn the_sky_behind_blocks_is_looked_up() {
     let mut gpu = gpu();
     let named = |name: &str| scenes().into_iter().find(|(found, _)| *found == name).expect("a scene").1;

@@ -93,7 +93,6 @@ fn dropping_the_renderer_finishes_its_jobs() {
 }
 
 #[test]
-#[ignore = "in tests/run all; everyday: C jobs in tests/c, and jobs that are cancelled"]
 fn jobs_and_frames_that_are_waited_for_take_turns() {
     let [mut renderer, _] = renderers();
     slow(&mut renderer);

@@ -126,14 +126,17 @@ fn windows_are_prepared_at_the_scale_of_their_quality() {
 }
 
 #[test]
-#[ignore = "in tests/run all; everyday: frames list every kernel that they run"]
 fn what_a_host_changes_next_is_made_in_the_background() {
-    // One renderer each for formats, for films, and for scenes, as a software driver keeps few kernels.
+    // One renderer each for formats, for films, and for scenes, as a software driver keeps few kernels. Everyday one
+    // that goes to another format and back, with another film.
     next_frames(&[
         (|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Rgba16F),
         (|_| (), PixelFormat::Rgba8Srgb),
         (|scene| scene.film.grade.saturation = 0.5, PixelFormat::Rgba8Srgb),
     ]);
+    if !runs_all() {
+        return;
+    }
     let formats = [PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
     next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }));
     next_frames(&[(|_| (), PixelFormat::Rgba16F), (|_| (), PixelFormat::Rgba8Srgb)]);
@@ -209,7 +212,10 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_pixels() {
         let (steps, differ) = (steps_apart(format, &own, &any), own.iter().zip(&any).filter(|(a, b)| a != b).count());
         let name = format!("{format:?}, {:?}, {:?}", scene.film.tone_map, scene.view);
         println!("{name}, {:?}: {differ} bytes differ, by {steps} steps", scene.camera.projection);
-        let good = if exactly { differ == 0 } else { steps <= 8.0 && differ * 500 <= own.len() };
+        // Floats of 32 bits differ in their last bits wherever a compiler rounds otherwise.
+        let few =
+            differ * 500 <= own.len() || (matches!(format, PixelFormat::Rgba32F | PixelFormat::R32F) && steps < 1.0);
+        let good = if exactly { differ == 0 } else { steps <= 8.0 && few };
         assert!(good, "{name}, {:?}: {differ} bytes differ, by {steps} steps", scene.camera.projection);
     };
     compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);

@@ -271,7 +271,7 @@ fn transmission_is_what_alpha_leaves() {
 
 /// Views among outputs are what frames of these views hold.
 #[test]
-#[ignore = "in tests/run all; everyday: outputs are what rays meet, and parts are parts of the whole"]
+#[ignore = "in tests/run all; everyday: outputs of views in tests/c"]
 fn views_are_those_of_frames() {
     let views =
         [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric, View::OpticalDepth, View::Intensity];

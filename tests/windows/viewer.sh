@@ -191,9 +191,8 @@ viewer_flies() {
 # A fall into a hole without spin goes on to the centre and begins again, one into a spinning hole to the inner horizon.
 # Orbits near the hole, in the plane and inclined. Every frame of all that can be rendered.
 viewer_falls_and_orbits() {
-    local spin orbit=100
+    local spin orbit=300
     local -A end=([0]=singularity [0.9]="inner horizon")
-    ! runs_all || orbit=300
     for spin in 0 0.9; do
         viewer_flies --spin "$spin" --motion freefall --distance 4 --frames 900 &&
             grep "${end[$spin]} is reached; the fall begins again" "$scratch/flight" || return 1

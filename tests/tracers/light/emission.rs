@@ -3,6 +3,7 @@
 //! angular momentum, and as distant disks show it.
 
 use super::{both, camera, hits, light, luminance, neighbours, view, whole};
+use crate::random::runs_all;
 use bhr::physics::limb_darkening::limb_darkening;
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Disk, DiskReference, EmissionLaw, LensTables, Method, Motion, Ray, View};
@@ -28,7 +29,6 @@ fn inside(orders: &[f64], k: usize) -> bool {
 /// Without spin a ray's angular momentum about the hole, r x p, is constant in size and direction: p_theta in the plane
 /// is its part along the plane, and the matter there sees p_theta / r of its frequency go along the normal.
 #[test]
-#[ignore = "in tests/run all; everyday: a distant disk is as bright as the table says"]
 fn each_pixel_is_as_bright_as_its_angle_in_the_matters_frame_says() {
     let moving = Camera { motion: Motion::Velocity, velocity: DVec3::new(-0.3, 0.5, 0.2), ..camera(20.0, 70.0, 40.0) };
     let cameras = [camera(25.0, 15.0, 45.0), camera(25.0, 80.0, 45.0), camera(60.0, 89.0, 45.0), moving];
@@ -42,6 +42,10 @@ fn each_pixel_is_as_bright_as_its_angle_in_the_matters_frame_says() {
         // Cameras innermost: a software driver keeps few kernels.
         for (tables, method) in ways {
             for (number, seen_from) in cameras.into_iter().enumerate() {
+                // Everyday the one that moves, in one way.
+                if !runs_all() && (number < 3 || tables == LensTables::Never) {
+                    continue;
+                }
                 renderer.scene.camera = seen_from;
                 renderer.scene.disk = Some(Disk::plain());
                 renderer.scene.quality.refines = false;
