@@ -127,8 +127,8 @@ fn frames_at_the_extremes() {
 }
 
 /// BHR_EXTREME_SCENES frames of 101 x 99 rays (cubes: fewer), most of them looked up: the middle one is exactly radial
-/// where the camera looks at the hole or away from it. Among the first 15 is every spin,
-/// motion, projection and kind of tables.
+/// where the camera looks at the hole or away from it. Among the first 15 is every spin, motion, projection and kind
+/// of tables.
 #[test]
 #[ignore = "in tests/run all; everyday: small frames at the same extremes"]
 fn table_frames_at_the_extremes() {

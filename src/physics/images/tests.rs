@@ -124,7 +124,7 @@ fn rays_of_images_pass_their_points_without_spin() {
 
 #[test]
 fn rays_of_images_pass_their_points_with_spin() {
-    let cases = cases(if runs_all() { 50_000 } else { 1_000 }, &SPINS, 1, [2.0, 1.0], 2);
+    let cases = cases(count(50_000), &SPINS, 1, [2.0, 1.0], 2);
     let [lost, missed] = lost_and_missed(&cases);
     assert_eq!(missed, 0);
     assert!(lost * 10_000 <= cases.len(), "{lost} lost");
