@@ -170,7 +170,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("emit/layers", "add_alone", "for (var block = 0u; block < parts && !is_dark(); block += 1u)", LAYERS),
     ("emit/layers", "add_cells", "while cell < count && !is_dark()", CELLS),
     ("emit/shown_part", "shown_stretch", "for (var i = 0u; i < not_inlined(LIMIT_SECANTS); i += 1u)", CONSTANT),
-    ("emit/streaks", "streak_exponent", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
+    ("emit/streaks", "streak_exponents", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var k = 0u; k < shown.count; k += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive.count; old += 1u)", TURBULENCE),
     ("emit/volumes", "add_part", "for (var k = 1u; k <= count; k += 1u)", PIECES),

@@ -6,11 +6,12 @@
 #import shared/band
 #import shared/math
 
-// The number of the first band that shows at a radius, how many do, and the weights of the first and the next.
+// The number of the first band that shows at three radii close to each other, how many do, and the angles whose cosines
+// and sines are the weights of the first and the next there.
 struct BandsAt {
     first: i32,
     count: u32,
-    shares: vec2<f32>,
+    turns: vec3<f32>,
 }
 
 // The age and the number of a band's youngest generation, how many live, the weights of the youngest and the one
@@ -22,15 +23,20 @@ struct Generations {
     weights: vec2<f32>,
 }
 
-// The bands that show at ln r: one, or two about their border.
-fn bands_at(ln_r: f32) -> BandsAt {
-    let place = ln_r / BAND;
-    let border = floor(place + 0.5);
-    let across = (place - border) * (2.0 / BAND_FADE);
-    let blends = abs(across) < 1.0;
-    let turn = 0.25 * PI * clamp(across + 1.0, 0.0, 2.0);
-    return BandsAt(i32(border) - select(1, 0, across >= 1.0), select(1u, 2u, blends),
-        select(vec2<f32>(1.0, 0.0), vec2<f32>(cos(turn), sin(turn)), blends));
+// The bands that show at three values of ln r, of which the middle one tells the border: one band, or two about it.
+fn bands_at(ln_r: vec3<f32>) -> BandsAt {
+    let border = floor(ln_r.y / BAND + 0.5);
+    let across = (ln_r / BAND - border) * (2.0 / BAND_FADE);
+    let outside = all(across >= vec3<f32>(1.0));
+    let single = outside || all(across <= vec3<f32>(-1.0));
+    let turns = 0.25 * PI * clamp(across + 1.0, vec3<f32>(0.0), vec3<f32>(2.0));
+    return BandsAt(i32(border) - select(1, 0, outside), select(2u, 1u, single),
+        select(turns, vec3<f32>(0.0), single));
+}
+
+// The weights of the first band, or, with `next`, of the one after it.
+fn band_weights(at: BandsAt, next: bool) -> vec3<f32> {
+    return cos(at.turns - select(0.0, 0.5 * PI, next));
 }
 
 // The index of a band among those of a frame, which begin with the number `first`: beyond the last one it goes on.

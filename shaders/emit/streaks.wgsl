@@ -8,16 +8,18 @@
 @group(0) @binding(7) var streaks: texture_2d<f32>;
 @group(0) @binding(8) var repeating: sampler;
 
-// ln of the mean of e^(s g) over the patch about a place, over that of the whole picture. `place` in periods (azimuth,
-// ln r); dx, dy: the patch's sides in texels.
-fn streak_exponent(s: f32, place: vec2<f32>, dx: vec2<f32>, dy: vec2<f32>) -> f32 {
-    let stretch2 = dot(dx, dx) + dot(dy, dy);
-    let cross = dx.x * dx.y + dy.x * dy.y;
-    let half_difference = 0.5 * (dx.x * dx.x + dy.x * dy.x - dx.y * dx.y - dy.y * dy.y);
+// ln of the mean of e^(s g) over each of a pixel's three parts, over that of the whole picture. The middle one lies
+// about `place`, in periods (azimuth, ln r), the others `apart` of the side `cut` before and behind it; 0: all are one.
+// cut, whole: the pixel's sides in texels.
+fn streak_exponents(s: vec3<f32>, place: vec2<f32>, apart: f32, cut: vec2<f32>, whole: vec2<f32>) -> vec3<f32> {
+    let dx = (1.0 - 2.0 * apart) * cut;
+    let stretch2 = dot(dx, dx) + dot(whole, whole);
+    let cross = dx.x * dx.y + whole.x * whole.y;
+    let half_difference = 0.5 * (dx.x * dx.x + whole.x * whole.x - dx.y * dx.y - whole.y * whole.y);
     let half_split = sqrt(half_difference * half_difference + cross * cross);
     let finest = 1.0 / STREAK_TEXEL;
     let major = max(sqrt(0.5 * stretch2 + half_split), finest);
-    let minor = max(max(abs(dx.x * dy.y - dx.y * dy.x) / major, major * (1.0 / STREAK_TAPS)), finest);
+    let minor = max(max(abs(dx.x * whole.y - dx.y * whole.x) / major, major * (1.0 / STREAK_TAPS)), finest);
     let along = select(vec2<f32>(cross, half_split - half_difference),
         vec2<f32>(half_split + half_difference, cross), half_difference >= 0.0);
     // False for NaN.
@@ -25,17 +27,26 @@ fn streak_exponent(s: f32, place: vec2<f32>, dx: vec2<f32>, dy: vec2<f32>) -> f3
     let level = select(f32(STREAK_LAST), clamp(round(log2(STREAK_TEXEL * minor)), 0.0, f32(STREAK_LAST)), known);
     let texel = exp2(level);
     let count = select(1.0, clamp(ceil(major / minor), 1.0, STREAK_TAPS), known);
-    let apart = sqrt(max(major * major - 3.0 * texel * texel, 0.0) / max(count * count - 1.0, 1.0));
+    let spacing = sqrt(max(major * major - 3.0 * texel * texel, 0.0) / max(count * count - 1.0, 1.0));
+    let texels = vec2<f32>(f32(STREAK_COLUMNS), f32(STREAK_ROWS));
     // An unknown patch has no direction: `along` is no number.
-    let step = select(vec2<f32>(0.0), along * (apart / max(length(along), 1e-30)), count > 1.0)
-        / vec2<f32>(f32(STREAK_COLUMNS), f32(STREAK_ROWS));
-    var sum = vec2<f32>(0.0);
+    let step = select(vec2<f32>(0.0), along * (spacing / max(length(along), 1e-30)), count > 1.0) / texels;
+    let parted = apart > 0.0;
+    let beside = apart * cut / texels;
+    var middle = vec2<f32>(0.0);
+    var before = vec2<f32>(0.0);
+    var behind = vec2<f32>(0.0);
     for (var i = 0u; i < u32(count); i += 1u) {
-        let k = f32(i) - 0.5 * (count - 1.0);
-        sum += textureSampleLevel(streaks, repeating, place + k * step, level).xy;
+        let tap = place + (f32(i) - 0.5 * (count - 1.0)) * step;
+        middle += textureSampleLevel(streaks, repeating, tap, level).xy;
+        if parted {
+            before += textureSampleLevel(streaks, repeating, tap - beside, level).xy;
+            behind += textureSampleLevel(streaks, repeating, tap + beside, level).xy;
+        }
     }
-    let seen = sum / count;
+    let mean = select(vec3<f32>(middle.x), vec3<f32>(before.x, middle.x, behind.x), parted) / count;
+    let light = select(vec3<f32>(middle.y), vec3<f32>(before.y, middle.y, behind.y), parted) / count;
     let c = STREAK_CUMULANTS;
-    let lost = (log(max(seen.y, 1e-3)) - seen.x) / (c.x + c.y + c.z);
-    return s * seen.x + s * s * (c.x + s * (c.y + s * c.z)) * (lost - 1.0);
+    let lost = (log(max(light, vec3<f32>(1e-3))) - mean) / (c.x + c.y + c.z);
+    return s * mean + s * s * (c.x + s * (c.y + s * c.z)) * (lost - 1.0);
 }

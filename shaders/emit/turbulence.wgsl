@@ -8,10 +8,6 @@
 #import shared/frame
 #import shared/math
 
-// Texels in a radian, and in an e-fold of the radius.
-const TEXELS_AROUND: f32 = f32(STREAK_COLUMNS) / TAU;
-const TEXELS_ACROSS: f32 = f32(STREAK_ROWS) / STREAK_PERIOD;
-
 // The factor on the disk's radiance. dx, dy: the change of `at` to the next pixel.
 fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint) -> f32 {
     let sense = sign(frame.signed_isco);
@@ -22,30 +18,44 @@ fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint)
     let right = vec2<f32>((dx.azimuth + omega * dx.delay) * TEXELS_AROUND, dx.ln_r * TEXELS_ACROSS);
     let down = vec2<f32>((dy.azimuth + omega * dy.delay) * TEXELS_AROUND, dy.ln_r * TEXELS_ACROSS);
     let sheared = shear * (TEXELS_AROUND / TEXELS_ACROSS);
+    let along_right = abs(right.y) >= abs(down.y);
+    let cut = select(down, right, along_right);
+    let whole = select(right, down, along_right);
+    let apart = part_of_side(cut, whole);
 
     let left = clamp(1.0 + (at.ln_r - frame.turbulence_fades_inside) / PLUNGE_FADE, 0.0, 1.0);
+    let beside = select(0.0, apart * cut.y / TEXELS_ACROSS, apart > 0.0);
     // One band shows or two, of one generation or two: as many turns as are needed, since lavapipe runs whatever an
     // `if` leaves out.
-    let shown = bands_at(at.ln_r);
-    var exponent = 0.0;
+    let shown = bands_at(at.ln_r + vec3<f32>(-beside, 0.0, beside));
+    var exponents = vec3<f32>(0.0);
     for (var k = 0u; k < shown.count; k += 1u) {
         let number = shown.first + i32(k);
         let band = frame.bands[band_index(number, frame.first_band)];
         let alive = generations(band, frame.turbulence_delay - at.delay);
         for (var old = 0u; old < alive.count; old += 1u) {
-            let weight = select(shown.shares.x, shown.shares.y, k == 1u)
-                * select(alive.weights.x, alive.weights.y, old == 1u);
+            let weight = select(alive.weights.x, alive.weights.y, old == 1u);
             let age = alive.young + f32(old) * band.spacing;
             let key = generation_key(number, alive.youngest - old, frame.pattern_seed);
             let from_seed = vec2<f32>(vec2<u32>(key & 0xffffu, key >> 16u)) / 65536.0;
             let shift = vec2<f32>(-sheared * age, 0.0);
-            exponent += streak_exponent(
-                frame.turbulence_strength * left * weight,
+            exponents += streak_exponents(
+                frame.turbulence_strength * left * weight * band_weights(shown, k == 1u),
                 vec2<f32>((at.azimuth - omega * age) / TAU, at.ln_r / STREAK_PERIOD) + from_seed,
-                right + shift * right.y,
-                down + shift * down.y,
+                apart,
+                cut + shift * cut.y,
+                whole + shift * whole.y,
             );
         }
     }
-    return exp(exponent);
+    return dot(exp(exponents), vec3<f32>(1.0 / 3.0));
+}
+
+// How far the three parts of a pixel are from each other, as a share of its side `cut`; 0: it has but one part. Sides
+// in texels.
+fn part_of_side(cut: vec2<f32>, whole: vec2<f32>) -> f32 {
+    let size = max(abs(cut.y), 0.5 * max(abs(cut.x), abs(whole.x)));
+    // False for NaN.
+    let large = size > LARGE_PIXEL && dot(cut, cut) < STREAK_WHOLE;
+    return select(0.0, min(1.0 / 3.0, BAND / 3.0 * TEXELS_ACROSS / abs(cut.y)), large);
 }

@@ -43,11 +43,8 @@ struct Lookup {
     on_edge: bool,
     // beyond_right_angle(t).
     beyond: f32,
-    // Weights of interpolation and their derivatives, by column and by row.
-    columns: vec4<f32>,
-    columns_slope: vec4<f32>,
-    rows: vec4<f32>,
-    rows_slope: vec4<f32>,
+    // How far it is from the cell's column to the next, and from its row to the next, 0 .. 1.
+    shares: vec2<f32>,
     // d(column), d(row) from this pixel to the next right and down.
     dx: vec2<f32>,
     dy: vec2<f32>,
@@ -89,10 +86,7 @@ fn look_up(id: vec2<u32>) -> Record {
     lookup.flags = lookup.all_flags;
     lookup.on_edge = false;
     lookup.beyond = beyond_right_angle(t);
-    lookup.columns = lagrange(around - f32(column));
-    lookup.columns_slope = lagrange_slope(around - f32(column));
-    lookup.rows = lagrange(place.share);
-    lookup.rows_slope = lagrange_slope(place.share);
+    lookup.shares = vec2<f32>(around - f32(column), place.share);
 
     // d psi and d chi; dt = (1 + t^2) / 2 (d psi - dR), dR = 2 dT / (1 + T^2), d(row) = n / ln 2 (dt / t - dT / T).
     let outward = kerr_radial(chi.x, chi.y) * cosine - lens.k.xyz * sine;
@@ -155,6 +149,10 @@ const KERR_SKY_LAYER: u32 = 0xffffu;
 
 // The value and the slopes of a layer of the crossings, or of the sky, at the record's place.
 fn interpolate(layer: u32) -> Interpolated {
+    let columns = lagrange(lookup.shares.x);
+    let columns_slope = lagrange_slope(lookup.shares.x);
+    let rows = lagrange(lookup.shares.y);
+    let rows_slope = lagrange_slope(lookup.shares.y);
     var sum: Interpolated;
     for (var j = 0u; j < 4u; j += 1u) {
         let row = lookup.cell.y + j - 1u;
@@ -168,12 +166,12 @@ fn interpolate(layer: u32) -> Interpolated {
             } else {
                 at = textureLoad(kerr_crossings, place, layer, 0);
             }
-            value += at * lookup.columns[i];
-            slope += at * lookup.columns_slope[i];
+            value += at * columns[i];
+            slope += at * columns_slope[i];
         }
-        sum.value += value * lookup.rows[j];
-        sum.by_row += value * lookup.rows_slope[j];
-        sum.by_column += slope * lookup.rows[j];
+        sum.value += value * rows[j];
+        sum.by_row += value * rows_slope[j];
+        sum.by_column += slope * rows[j];
     }
     return sum;
 }

@@ -37,24 +37,30 @@ struct Lookup {
     // d(swept) / d(place), place being the coordinate in nodes, and d(place) / d(psi).
     swept_slope: f32,
     slope: f32,
-    // sin psi.
-    sine: f32,
     // From this pixel to the next right and below: the change of place, and the angle by which the ray's plane turns
     // about e_r, rad.
     change: vec2<f32>,
     turn: vec2<f32>,
-    // d(first crossing's angle) to the next pixel right and down: the same for every crossing.
-    first_change: vec2<f32>,
+    // d(first crossing's angle) / d(turn): the same for every crossing.
+    first_slope: f32,
     // Whether an edge of the disk runs through the pixel at a crossing given so far.
     on_edge: bool,
     // The factor beyond_right_angle of records/record.wgsl.
     beyond: f32,
-    // Unit vectors of the ray's plane (with e_r) and across it, chart.
-    along: vec3<f32>,
-    across: vec3<f32>,
+    // The tangential unit vector in the ray's plane, (e_theta, e_phi).
+    tangent: vec2<f32>,
 }
 
 var<private> lookup: Lookup;
+
+// Unit vectors of the ray's plane (with e_r) and across it, chart.
+fn along_plane() -> vec3<f32> {
+    return frame.e_theta.xyz * lookup.tangent.x + frame.e_phi.xyz * lookup.tangent.y;
+}
+
+fn across_plane() -> vec3<f32> {
+    return frame.e_phi.xyz * lookup.tangent.x - frame.e_theta.xyz * lookup.tangent.y;
+}
 
 fn ray_record(id: vec2<u32>) -> Record {
     set_media_pixel(id);
@@ -84,7 +90,6 @@ fn ray_record(id: vec2<u32>) -> Record {
     let slope = f32(LENS_PER_OCTAVE) * 0.7213475204444817 * (1.0 + t * t)
         / (select(-t_hat, t_hat, escaped) * lens.critical.w);
 
-    // Tangential unit vector, (e_theta, e_phi).
     let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
     let d_psi = vec2<f32>(s * dx.x - n.x * dot(tangent, dx.yz), s * dy.x - n.x * dot(tangent, dy.yz));
     let d_across = vec2<f32>(tangent.x * dx.z - tangent.y * dx.y, tangent.x * dy.z - tangent.y * dy.y);
@@ -95,11 +100,9 @@ fn ray_record(id: vec2<u32>) -> Record {
     lookup.order = 0u;
     lookup.swept_slope = swept_slope;
     lookup.slope = slope;
-    lookup.sine = s;
     lookup.change = slope * d_psi;
     lookup.turn = d_across / max(s, 1e-6);
-    lookup.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
-    lookup.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
+    lookup.tangent = tangent;
     lookup.first = first_crossing_angle(tangent.x);
     lookup.on_edge = false;
     lookup.beyond = beyond_right_angle(t);
@@ -107,8 +110,8 @@ fn ray_record(id: vec2<u32>) -> Record {
         // The crossing moves so that N_z stays 0: dphi = -sin(phi) dT_z / N_z' (OrbitPlane::phi_change). That is the
         // same for every crossing, because sin(phi) and N_z' change sign together from one to the next.
         let turn = sincos(min(lookup.first, PI));
-        let rise = lookup.along.z * turn.y - frame.e_r.z * turn.x;
-        lookup.first_change = lookup.turn * (-lookup.across.z * turn.x / rise);
+        let rise = along_plane().z * turn.y - frame.e_r.z * turn.x;
+        lookup.first_slope = -across_plane().z * turn.x / rise;
     }
 
     // L = r sin(theta) p_phi, p = -n.
@@ -126,14 +129,16 @@ fn with_sky(record: Record) -> Record {
     let turn = sincos(lookup.swept);
     let e_r = frame.e_r.xyz;
     var whole = record;
-    whole.sky = e_r * turn.y + lookup.along * turn.x;
+    let plane = along_plane();
+    whole.sky = e_r * turn.y + plane * turn.x;
     // The sky direction changes by d(swept) in the ray's plane, and across it by sin(swept) / sin(psi) times the change
     // of look direction, which is sin(swept) times the turn of the plane. For rays that leave radially both sines
     // vanish: the limit of their ratio is -d(swept) / d(psi).
-    let radial = lookup.sine < 1e-3 && lookup.seen.n.x > 0.0;
-    let across = select(turn.x, -lookup.swept_slope * lookup.slope * max(lookup.sine, 1e-6), radial) * lookup.turn;
+    let sine = length(lookup.seen.n.yz);
+    let radial = sine < 1e-3 && lookup.seen.n.x > 0.0;
+    let across = select(turn.x, -lookup.swept_slope * lookup.slope * max(sine, 1e-6), radial) * lookup.turn;
     let along = lookup.swept_slope * lookup.change;
-    whole.footprint = Footprint(lookup.along * turn.y - e_r * turn.x, lookup.across, vec2<f32>(along.x, across.x),
+    whole.footprint = Footprint(plane * turn.y - e_r * turn.x, across_plane(), vec2<f32>(along.x, across.x),
         vec2<f32>(along.y, across.y));
     return whole;
 }
@@ -201,7 +206,7 @@ fn more_crossings() -> bool {
 fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
     let y = phi / lookup.swept;
     return at.y * lookup.change
-        + at.z * ((lookup.first_change - y * lookup.swept_slope * lookup.change) / lookup.swept);
+        + at.z * ((lookup.turn * lookup.first_slope - y * lookup.swept_slope * lookup.change) / lookup.swept);
 }
 
 // A table's value at the record's place and y = phi / swept, 0 .. 1, then d/d(place) and d/dy. Interpolation is cubic:
@@ -238,8 +243,9 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
         return;
     }
     let turn = sincos(phi);
-    let n = frame.e_r.xyz * turn.y + lookup.along * turn.x;
-    let tangent = lookup.along * turn.y - frame.e_r.xyz * turn.x;
+    let along = along_plane();
+    let n = frame.e_r.xyz * turn.y + along * turn.x;
+    let tangent = along * turn.y - frame.e_r.xyz * turn.x;
     // du/dtau.
     let kappa = sqrt(c.k);
     let du = at.z / lookup.swept * kappa;
@@ -252,10 +258,11 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
         return;
     }
     // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
-    let swing = (n.x * lookup.across.y - n.y * lookup.across.x) * turn.x;
+    let across = across_plane();
+    let swing = (n.x * across.y - n.y * across.x) * turn.x;
     let around = n.x * tangent.y - n.y * tangent.x;
     let rho2 = n.x * n.x + n.y * n.y;
-    let phi_change = lookup.first_change;
+    let phi_change = lookup.turn * lookup.first_slope;
     let azimuth_change = (lookup.turn * swing + phi_change * around) / rho2;
     let du_change = u_change(at, phi);
     // The gradient of the travel time at the emission point is the photon's momentum over E (Hamilton-Jacobi):

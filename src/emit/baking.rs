@@ -129,11 +129,11 @@ impl Baking {
 /// The generations that show at ln r.
 pub fn row_generations(clouds: &Clouds, ln_r: f64) -> [RowGeneration; ROW_GENERATIONS] {
     let mut all = [RowGeneration::default(); ROW_GENERATIONS];
-    for (made, shown) in all.iter_mut().zip(clouds.bands.shown(ln_r, 0.0)) {
+    for (made, shown) in all.iter_mut().zip(clouds.bands.shown([ln_r], 0.0)) {
         let key = shown.key;
         let share = |bits: u32| f64::from(bits & 0xffff) / 65536.0;
         *made = RowGeneration {
-            scale: (clouds.clumping * clouds.strength * shown.weight) as f32,
+            scale: (clouds.clumping * clouds.strength * shown.weights[0]) as f32,
             age: shown.age as f32,
             turn: share(key) as f32,
             row: ((ln_r - shown.drift * shown.age) / clouds.period + share(key >> 16)).rem_euclid(1.0) as f32,

@@ -73,12 +73,13 @@ pub struct Bands {
     pub bands: [Band; MOST_BANDS],
 }
 
-/// The bands that show at a radius: the number of the first, how many, and the weights of the first and the next.
+/// The bands that show at N radii close to each other: the number of the first, how many, and the weights of the first
+/// and the next at each radius.
 #[derive(Clone, Copy, Debug)]
-pub struct BandsAt {
+pub struct BandsAt<const N: usize> {
     pub first: i32,
     pub count: usize,
-    pub shares: [f64; 2],
+    pub shares: [[f64; N]; 2],
 }
 
 /// The generations of a band that live at a time: the age and the number of the youngest, how many there are, and the
@@ -91,10 +92,10 @@ pub struct Generations {
     pub weights: [f64; 2],
 }
 
-/// A generation that shows at a place.
+/// A generation that shows at a place, with its weights at N radii about it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown {
-    pub weight: f64,
+pub struct Shown<const N: usize> {
+    pub weights: [f64; N],
     /// M.
     pub age: f64,
     pub drift: f64,
@@ -123,8 +124,8 @@ impl Bands {
         Self { seed, first, count, bands }
     }
 
-    /// The generations that show at ln r, `later` than the reference time: those of one band or two.
-    pub fn shown(&self, ln_r: f64, later: f64) -> ArrayVec<Shown, 4> {
+    /// The generations that show at any of the `ln_r`, `later` than the reference time: those of one band or two.
+    pub fn shown<const N: usize>(&self, ln_r: [f64; N], later: f64) -> ArrayVec<Shown<N>, 4> {
         let mut all = ArrayVec::new();
         let BandsAt { first, count, shares } = bands_at(ln_r);
         for (k, number) in (first..).take(count).enumerate() {
@@ -133,7 +134,7 @@ impl Bands {
             for (old, weight) in (0..).zip(weights).take(count) {
                 // There is room for two generations of two bands.
                 let _ = all.try_push(Shown {
-                    weight: shares[k] * weight,
+                    weights: shares[k].map(|share| share * weight),
                     age: young + f64::from(old) * band.spacing,
                     drift: band.drift,
                     key: generation_key(number, youngest.wrapping_sub(old), self.seed),
@@ -168,18 +169,19 @@ impl Band {
     }
 }
 
-/// The bands that show at ln r: one, or two about their border.
-pub fn bands_at(ln_r: f64) -> BandsAt {
-    let place = ln_r / BAND;
-    let border = (place + 0.5).floor();
-    let across = (place - border) * (2.0 / BAND_FADE);
+/// The bands that show at N values of ln r, of which the middle one tells the border: one band, or two about it.
+pub fn bands_at<const N: usize>(ln_r: [f64; N]) -> BandsAt<N> {
+    let border = (ln_r[N / 2] / BAND + 0.5).floor();
+    let across = ln_r.map(|ln_r| (ln_r / BAND - border) * (2.0 / BAND_FADE));
     let border = border.clamp(-1e6, 1e6) as i32;
-    if across.abs() < 1.0 {
-        let (outer, inner) = (FRAC_PI_4 * (across + 1.0)).sin_cos();
-        BandsAt { first: border - 1, count: 2, shares: [inner, outer] }
-    } else {
-        BandsAt { first: if across >= 1.0 { border } else { border - 1 }, count: 1, shares: [1.0, 0.0] }
+    if across.iter().all(|across| *across >= 1.0) {
+        return BandsAt { first: border, count: 1, shares: [[1.0; N], [0.0; N]] };
     }
+    if across.iter().all(|across| *across <= -1.0) {
+        return BandsAt { first: border - 1, count: 1, shares: [[1.0; N], [0.0; N]] };
+    }
+    let turns = across.map(|across| FRAC_PI_4 * (across.clamp(-1.0, 1.0) + 1.0));
+    BandsAt { first: border - 1, count: 2, shares: [turns.map(f64::cos), turns.map(f64::sin)] }
 }
 
 /// The bits of a generation of a band, from which it has its part of the pattern.
@@ -207,10 +209,13 @@ mod tests {
             let bands = bands(time, 3);
             let mut most = 0;
             for i in 0..4000 {
-                let shown = bands.shown(0.4 + f64::from(i) * 8e-4, f64::from(i % 37) - 20.0);
+                let (ln_r, apart) = (0.4 + f64::from(i) * 8e-4, f64::from(i % 11) * 0.01);
+                let shown = bands.shown([ln_r - apart, ln_r, ln_r + apart], f64::from(i % 37) - 20.0);
                 most = most.max(shown.len());
-                let sum: f64 = shown.iter().map(|s| s.weight * s.weight).sum();
-                assert!((sum - 1.0).abs() < 1e-12, "{time} {i}: {sum}");
+                for k in 0..3 {
+                    let sum: f64 = shown.iter().map(|s| s.weights[k] * s.weights[k]).sum();
+                    assert!((sum - 1.0).abs() < 1e-12, "{time} {i}: {sum}");
+                }
             }
             assert_eq!(most, 4, "{time}");
         }
@@ -222,12 +227,15 @@ mod tests {
         let (early, late) = (bands(1000.0, 8), bands(1040.0, 8));
         for i in 0..300 {
             let ln_r = 0.6 + 0.009 * f64::from(i);
-            let [mut a, mut b] = [early.shown(ln_r, 40.0), late.shown(ln_r, 0.0)];
+            let [mut a, mut b] = [early.shown([ln_r], 40.0), late.shown([ln_r], 0.0)];
             // At the very end of its life one may be left out by a rounding.
-            [&mut a, &mut b].into_iter().for_each(|shown| shown.retain(|s| s.weight > 1e-6));
+            [&mut a, &mut b].into_iter().for_each(|shown| shown.retain(|s| s.weights[0] > 1e-6));
             assert_eq!(a.len(), b.len(), "{ln_r}");
             for (a, b) in a.iter().zip(&b) {
-                assert!((a.age - b.age).abs() < 1e-9 && (a.weight - b.weight).abs() < 1e-9, "{ln_r}: {a:?} {b:?}");
+                assert!(
+                    (a.age - b.age).abs() < 1e-9 && (a.weights[0] - b.weights[0]).abs() < 1e-9,
+                    "{ln_r}: {a:?} {b:?}"
+                );
                 assert_eq!((a.key, a.drift), (b.key, 0.25), "{ln_r}");
             }
         }

@@ -319,7 +319,7 @@ mod tests {
             let r = ln_r.exp();
             let omega = carried(r, if clouds.leans { at.cos } else { self.cloud.middle_cos(r) }).omega;
             let mut sum = 0.0;
-            for Shown { weight, age, drift, key } in clouds.bands.shown(ln_r, 0.0) {
+            for Shown { weights: [weight], age, drift, key } in clouds.bands.shown([ln_r], 0.0) {
                 let place = [
                     turns - omega * age / TAU + f64::from(key & 0xffff) / 65536.0,
                     (ln_r - drift * age) / clouds.period + f64::from(key >> 16) / 65536.0,

@@ -254,22 +254,31 @@ impl Streaks {
         })
     }
 
-    /// The patch about a place, in periods (azimuth, ln r); `dx`, `dy`: its sides, in texels.
-    pub fn patch(&self, place: [f64; 2], dx: [f64; 2], dy: [f64; 2]) -> Patch {
-        let taps = Taps::new(dx, dy);
+    /// The patches of a pixel's three parts: the middle one's about a place, in periods (azimuth, ln r), the others'
+    /// `apart` of the side `cut` before and behind it; 0: all are one. `cut`, `whole`: the pixel's sides, in texels.
+    pub fn patches(&self, place: [f64; 2], apart: f64, cut: [f64; 2], whole: [f64; 2]) -> [Patch; 3] {
+        let taps = Taps::new(cut.map(|side| (1.0 - 2.0 * apart) * side), whole);
         let level = &self.levels[taps.level.min(STREAK_LAST)];
         let sides = [level.columns as f64, level.rows as f64];
         let last = 0.5 * (f64::from(taps.count) - 1.0);
         // In texels of the level, from their centres.
         let first = [0, 1].map(|c| (place[c] - last * taps.step[c]) * sides[c] - 0.5);
         let step = [0, 1].map(|c| taps.step[c] * sides[c]);
-        let mut sum = [0.0_f32; 2];
-        for i in 0..taps.count {
-            let texel = self.bilinear(level, [0, 1].map(|c| first[c] + f64::from(i) * step[c]));
-            (0..2).for_each(|c| sum[c] += texel[c]);
+        let patch = |first: [f64; 2]| {
+            let mut sum = [0.0_f32; 2];
+            for i in 0..taps.count {
+                let texel = self.bilinear(level, [0, 1].map(|c| first[c] + f64::from(i) * step[c]));
+                (0..2).for_each(|c| sum[c] += texel[c]);
+            }
+            let [mean, light] = sum.map(|v| f64::from(v) / f64::from(taps.count));
+            Patch { mean, light }
+        };
+        if apart <= 0.0 {
+            return [patch(first); 3];
         }
-        let [mean, light] = sum.map(|v| f64::from(v) / f64::from(taps.count));
-        Patch { mean, light }
+        let texels = [STREAK_COLUMNS as f64, STREAK_ROWS as f64];
+        let beside = [0, 1].map(|c| apart * cut[c] / texels[c] * sides[c]);
+        [-1.0, 0.0, 1.0].map(|part| patch([0, 1].map(|c| first[c] + part * beside[c])))
     }
 
     /// Between texels of a level, around both sides; `at` in texels from the first one's centre.
@@ -346,6 +355,12 @@ mod tests {
         streaks.texels[..STREAK_COLUMNS * STREAK_ROWS].iter().map(|texel| f64::from(texel[0]))
     }
 
+    /// That of a pixel of one part.
+    fn patch(streaks: &Streaks, place: [f64; 2], dx: [f64; 2], dy: [f64; 2]) -> Patch {
+        let [_, middle, _] = streaks.patches(place, 0.0, dx, dy);
+        middle
+    }
+
     fn mean(values: impl Iterator<Item = f64>) -> f64 {
         let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
         sum / count
@@ -387,11 +402,11 @@ mod tests {
         for (x, y) in [(0, 0), (1023, 511), (300, 7)] {
             let place = [(x as f64 + 0.5) / 1024.0 - 3.0, (y as f64 + 0.5) / 512.0 + 2.0];
             let texel = streaks.texels[y * STREAK_COLUMNS + x].map(f64::from);
-            let seen = streaks.patch(place, [0.0; 2], [1e-9, 0.0]);
+            let seen = patch(streaks, place, [0.0; 2], [1e-9, 0.0]);
             assert!((seen.mean - texel[0]).abs() < 1e-9 && (seen.light - texel[1]).abs() < 1e-9, "{seen:?} {texel:?}");
         }
         for far in [1e7, 1e30, f64::INFINITY, f64::NAN] {
-            let seen = streaks.patch([0.3, 0.4], [far, 0.0], [0.0, 1.0]);
+            let seen = patch(streaks, [0.3, 0.4], [far, 0.0], [0.0, 1.0]);
             assert!(seen.exponent(1.0).abs() < 1e-3, "{far}: {seen:?}");
         }
         for (dx, dy) in
@@ -400,7 +415,7 @@ mod tests {
             for s in [0.3, 1.0] {
                 let place = |i: u32| f64::from(i) / 211.0;
                 let places = (0..211).flat_map(|i| (0..211).map(move |j| [place(i), place(j)]));
-                let average = mean(places.map(|place| streaks.patch(place, dx, dy).exponent(s).exp()));
+                let average = mean(places.map(|place| patch(streaks, place, dx, dy).exponent(s).exp()));
                 assert!((average - 1.0).abs() < 0.015, "{dx:?} {dy:?} {s}: {average}");
             }
         }
@@ -422,7 +437,7 @@ mod tests {
                     f64::from(streaks.bilinear(&streaks.levels[0], texel.map(|x| x - 0.5))[0]).exp()
                 });
                 let truth = mean(inside) / STREAK_CUMULANTS.iter().sum::<f64>().exp();
-                let error = (streaks.patch(place, dx, dy).exponent(1.0).exp() / truth - 1.0).abs();
+                let error = (patch(streaks, place, dx, dy).exponent(1.0).exp() / truth - 1.0).abs();
                 count += 1;
                 [0.05, 0.2].iter().zip(&mut beyond).for_each(|(limit, n)| *n += u32::from(error > *limit));
             }

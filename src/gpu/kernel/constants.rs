@@ -203,6 +203,9 @@ fn all() -> Vec<(&'static str, Value)> {
         STREAK_LAST: u32 = streaks::STREAK_LAST;
         STREAK_CUMULANTS: vec3 = streaks::STREAK_CUMULANTS;
         STREAK_TAPS: f32 = streaks::STREAK_TAPS;
+        LARGE_PIXEL: f32 = turbulence::LARGE_PIXEL;
+        TEXELS_AROUND: f32 = turbulence::TEXELS_AROUND;
+        TEXELS_ACROSS: f32 = turbulence::TEXELS_ACROSS;
         STREAK_TEXEL: f32 = streaks::STREAK_TEXEL;
         STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
         SKY_SOURCE_FLOAT: u32 = SKY_SOURCE_FLOAT;

@@ -158,19 +158,26 @@ pub fn group() -> Group {
     let twins = vec![
         twin(
             bands,
-            "bands_at",
-            "let at = bands_at(in1(0u)); let one = select(at.shares, vec2<f32>(at.shares.x, 0.0), at.count == 1u);
-             out2(one);",
+            "bands_at band_weights",
+            "let at = bands_at(in3(0u)); out3(band_weights(at, false)); out3(band_weights(at, true));",
             |i| {
-                i.even(-1.0, 9.0);
+                let middle = i.random.even(-1.0, 9.0);
+                let apart = [0.0, 0.01, 0.1][i.random.below(3) as usize];
+                i.push(middle - apart);
+                i.push(middle);
+                i.push(middle + apart);
             },
-            |i, o| o.all(bands_at(i.x(0)).shares, 1.0),
+            |i, o| {
+                let [first, next] = bands_at([0, 1, 2].map(|k| i.x(k))).shares;
+                o.all(first, 1.0);
+                o.all(next, 1.0);
+            },
             ROUNDING,
         ),
         twin(
             bands,
             "bands_at band_index",
-            "let at = bands_at(in1(0u)); out1(f32(at.first)); out1(f32(at.count));
+            "let at = bands_at(vec3<f32>(in1(0u))); out1(f32(at.first)); out1(f32(at.count));
              out1(f32(band_index(i32(word(1u)), 3)));",
             |i| {
                 // Away from where one band becomes two.
@@ -180,7 +187,7 @@ pub fn group() -> Group {
                 i.pick(80);
             },
             |i, o| {
-                let at = bands_at(i.x(0));
+                let at = bands_at([i.x(0)]);
                 o.put(f64::from(at.first));
                 o.put(at.count as f64);
                 o.put((f64::from(i.word(1)) - 3.0).clamp(0.0, crate::emit::bands::MOST_BANDS as f64 - 1.0));

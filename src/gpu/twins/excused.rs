@@ -153,7 +153,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("lens/schwarzschild_columns", "fill_columns", RECORDS),
     ("lens/schwarzschild_ends", "find_ends", RECORDS),
     ("lens/schwarzschild_record", "ray_record with_sky next_crossing column_at complete edges_of_pixel", RECORDS),
-    ("lens/schwarzschild_record", "u_change", FOOTPRINTS),
+    ("lens/schwarzschild_record", "u_change along_plane across_plane", FOOTPRINTS),
     ("lens/schwarzschild_record", "more_crossings rewind_crossings sample_turn defer_pixel", HOOK),
     ("lens/each_deferred", "each_deferred", ENTRY),
     ("records/each_pixel", "each_pixel", ENTRY),

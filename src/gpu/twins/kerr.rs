@@ -190,8 +190,8 @@ pub fn group() -> Group {
             "look_up",
             "enter_lens(); pass_.origin = vec2<i32>(-1); pass_.offset = in2(13u);
              let record = look_up(vec2<u32>(0u));
-             out1(f32(i32(lookup.cell.x) - i32(word(15u))) + dot(lookup.columns, vec4<f32>(-1.0, 0.0, 1.0, 2.0)));
-             out1(f32(i32(lookup.cell.y) - i32(word(16u))) + dot(lookup.rows, vec4<f32>(-1.0, 0.0, 1.0, 2.0)));
+             out1(f32(i32(lookup.cell.x) - i32(word(15u))) + lookup.shares.x);
+             out1(f32(i32(lookup.cell.y) - i32(word(16u))) + lookup.shares.y);
              out2(lookup.dx); out2(lookup.dy); out1(min(lookup.beyond, 1e3));",
             push_pixel,
             looked_up,

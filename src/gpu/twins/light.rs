@@ -8,7 +8,7 @@ use super::{Group, ROUNDING, SAME, twin};
 pub use crate::emit::EmissionPoint;
 use crate::emit::streaks::{STREAK_COLUMNS, STREAK_LAST, STREAK_ROWS, Streaks};
 use crate::emit::thin_disk::{emission_law, profile_row};
-use crate::emit::turbulence::Turbulence;
+use crate::emit::turbulence::{Turbulence, part_of_side};
 use crate::gpu::kernel::slots::STREAKS;
 use crate::physics::blackbody::{
     BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, fitted_colour, fitted_luminance, into_gamut,
@@ -283,14 +283,37 @@ pub fn group() -> Group {
             4e-3,
         ),
         twin(
-            "emit/streaks",
-            "streak_exponent",
-            "out1(streak_exponent(in1(0u), in2(1u), in2(3u), in2(5u)));",
+            turbulent,
+            "part_of_side",
+            "out1(part_of_side(in2(0u), in2(2u)));",
             |i| {
-                i.even(0.0, 1.0);
+                // One in eight is unknown.
+                let unknown = i.random.below(8) == 0;
+                for _ in 0..4 {
+                    if unknown {
+                        i.push(1e33);
+                    } else {
+                        i.signed(1e-1, 1e3);
+                    }
+                }
+            },
+            |i, o| {
+                let two = |k: usize| [i.x(k), i.x(k + 1)];
+                o.near(part_of_side(two(0), two(2)), 1.0);
+            },
+            ROUNDING,
+        ),
+        twin(
+            "emit/streaks",
+            "streak_exponents",
+            "out3(streak_exponents(in3(0u), in2(3u), in1(5u), in2(6u), in2(8u)));",
+            |i| {
+                i.evens(3, 0.0, 1.0);
                 i.evens(2, -3.0, 3.0);
                 // One in eight is unknown, as UNKNOWN_EMISSION_POINT makes it.
                 let unknown = i.random.below(8) == 0;
+                let parted = !unknown && i.random.below(2) == 0;
+                i.even(0.0, if parted { 1.0 / 3.0 } else { 0.0 });
                 for _ in 0..4 {
                     if unknown {
                         i.push(1e33);
@@ -301,8 +324,8 @@ pub fn group() -> Group {
             },
             |i, o| {
                 let two = |k: usize| [i.x(k), i.x(k + 1)];
-                let patch = Streaks::shared().expect("streaks").patch(two(1), two(3), two(5));
-                o.near(patch.exponent(i.x(0)), 1.0);
+                let patches = Streaks::shared().expect("streaks").patches(two(3), i.x(5), two(6), two(8));
+                patches.iter().zip(0..).for_each(|(patch, k)| o.near(patch.exponent(i.x(k)), 1.0));
             },
             4e-3,
         ),
