@@ -7,7 +7,7 @@
 #import shared/math
 
 // The number of the first band that shows at three radii close to each other, how many do, and the angles whose cosines
-// and sines are the weights of the first and the next there.
+// and sines are the weights of the first and the next there: three angles take less room than six weights.
 struct BandsAt {
     first: i32,
     count: u32,

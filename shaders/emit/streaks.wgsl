@@ -9,17 +9,17 @@
 @group(0) @binding(8) var repeating: sampler;
 
 // ln of the mean of e^(s g) over each of a pixel's three parts, over that of the whole picture. The middle one lies
-// about `place`, in periods (azimuth, ln r), the others `apart` of the side `cut` before and behind it; 0: all are one.
-// cut, whole: the pixel's sides in texels.
-fn streak_exponents(s: vec3<f32>, place: vec2<f32>, apart: f32, cut: vec2<f32>, whole: vec2<f32>) -> vec3<f32> {
+// about `place`, in periods (azimuth, ln r), the others the share `apart` of the side `cut` before and behind it; with
+// 0 each is the whole pixel. cut, other: the pixel's sides in texels.
+fn streak_exponents(s: vec3<f32>, place: vec2<f32>, apart: f32, cut: vec2<f32>, other: vec2<f32>) -> vec3<f32> {
     let dx = (1.0 - 2.0 * apart) * cut;
-    let stretch2 = dot(dx, dx) + dot(whole, whole);
-    let cross = dx.x * dx.y + whole.x * whole.y;
-    let half_difference = 0.5 * (dx.x * dx.x + whole.x * whole.x - dx.y * dx.y - whole.y * whole.y);
+    let stretch2 = dot(dx, dx) + dot(other, other);
+    let cross = dx.x * dx.y + other.x * other.y;
+    let half_difference = 0.5 * (dx.x * dx.x + other.x * other.x - dx.y * dx.y - other.y * other.y);
     let half_split = sqrt(half_difference * half_difference + cross * cross);
     let finest = 1.0 / STREAK_TEXEL;
     let major = max(sqrt(0.5 * stretch2 + half_split), finest);
-    let minor = max(max(abs(dx.x * whole.y - dx.y * whole.x) / major, major * (1.0 / STREAK_TAPS)), finest);
+    let minor = max(max(abs(dx.x * other.y - dx.y * other.x) / major, major * (1.0 / STREAK_TAPS)), finest);
     let along = select(vec2<f32>(cross, half_split - half_difference),
         vec2<f32>(half_split + half_difference, cross), half_difference >= 0.0);
     // False for NaN.

@@ -20,8 +20,8 @@ fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint)
     let sheared = shear * (TEXELS_AROUND / TEXELS_ACROSS);
     let along_right = abs(right.y) >= abs(down.y);
     let cut = select(down, right, along_right);
-    let whole = select(right, down, along_right);
-    let apart = part_of_side(cut, whole);
+    let other = select(right, down, along_right);
+    let apart = part_of_side(cut, other);
 
     let left = clamp(1.0 + (at.ln_r - frame.turbulence_fades_inside) / PLUNGE_FADE, 0.0, 1.0);
     let beside = select(0.0, apart * cut.y / TEXELS_ACROSS, apart > 0.0);
@@ -44,18 +44,19 @@ fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint)
                 vec2<f32>((at.azimuth - omega * age) / TAU, at.ln_r / STREAK_PERIOD) + from_seed,
                 apart,
                 cut + shift * cut.y,
-                whole + shift * whole.y,
+                other + shift * other.y,
             );
         }
     }
     return dot(exp(exponents), vec3<f32>(1.0 / 3.0));
 }
 
-// How far the three parts of a pixel are from each other, as a share of its side `cut`; 0: it has but one part. Sides
-// in texels.
-fn part_of_side(cut: vec2<f32>, whole: vec2<f32>) -> f32 {
-    let size = max(abs(cut.y), 0.5 * max(abs(cut.x), abs(whole.x)));
-    // False for NaN.
+// How far the middles of a pixel's three parts are from each other, as a share of its side `cut`. A pixel that is
+// small, or of unknown size, has one part: 0. Sides in texels.
+fn part_of_side(cut: vec2<f32>, other: vec2<f32>) -> f32 {
+    let across = abs(cut.y);
+    let size = max(across, 0.5 * max(abs(cut.x), abs(other.x)));
+    // False where the side is no number.
     let large = size > LARGE_PIXEL && dot(cut, cut) < STREAK_WHOLE;
-    return select(0.0, min(1.0 / 3.0, BAND / 3.0 * TEXELS_ACROSS / abs(cut.y)), large);
+    return select(0.0, min(1.0 / 3.0, BAND / 3.0 * TEXELS_ACROSS / max(across, 1e-30)), large);
 }

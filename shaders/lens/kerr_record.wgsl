@@ -43,7 +43,8 @@ struct Lookup {
     on_edge: bool,
     // beyond_right_angle(t).
     beyond: f32,
-    // How far it is from the cell's column to the next, and from its row to the next, 0 .. 1.
+    // The place in the cell, as shares of the way to the next column and to the next row. Weights of interpolation are
+    // worked out anew for each layer: kept, they would take registers while a crossing is shaded.
     shares: vec2<f32>,
     // d(column), d(row) from this pixel to the next right and down.
     dx: vec2<f32>,

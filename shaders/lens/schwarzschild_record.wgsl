@@ -47,17 +47,19 @@ struct Lookup {
     on_edge: bool,
     // The factor beyond_right_angle of records/record.wgsl.
     beyond: f32,
-    // The tangential unit vector in the ray's plane, (e_theta, e_phi).
+    // The tangential unit vector in the ray's plane, (e_theta, e_phi). Vectors in the chart are worked out of it where
+    // they are used: kept, they would take registers while a crossing is shaded.
     tangent: vec2<f32>,
 }
 
 var<private> lookup: Lookup;
 
-// Unit vectors of the ray's plane (with e_r) and across it, chart.
+// The unit vector that spans the ray's plane together with e_r, chart.
 fn along_plane() -> vec3<f32> {
     return frame.e_theta.xyz * lookup.tangent.x + frame.e_phi.xyz * lookup.tangent.y;
 }
 
+// The unit vector across the ray's plane, chart.
 fn across_plane() -> vec3<f32> {
     return frame.e_phi.xyz * lookup.tangent.x - frame.e_theta.xyz * lookup.tangent.y;
 }

@@ -254,10 +254,11 @@ impl Streaks {
         })
     }
 
-    /// The patches of a pixel's three parts: the middle one's about a place, in periods (azimuth, ln r), the others'
-    /// `apart` of the side `cut` before and behind it; 0: all are one. `cut`, `whole`: the pixel's sides, in texels.
-    pub fn patches(&self, place: [f64; 2], apart: f64, cut: [f64; 2], whole: [f64; 2]) -> [Patch; 3] {
-        let taps = Taps::new(cut.map(|side| (1.0 - 2.0 * apart) * side), whole);
+    /// The patches of a pixel's three parts. The middle one lies about `place`, in periods (azimuth, ln r), the others
+    /// the share `apart` of the side `cut` before and behind it; with 0 each is the whole pixel. `cut`, `other`: the
+    /// pixel's sides, in texels.
+    pub fn patches(&self, place: [f64; 2], apart: f64, cut: [f64; 2], other: [f64; 2]) -> [Patch; 3] {
+        let taps = Taps::new(cut.map(|side| (1.0 - 2.0 * apart) * side), other);
         let level = &self.levels[taps.level.min(STREAK_LAST)];
         let sides = [level.columns as f64, level.rows as f64];
         let last = 0.5 * (f64::from(taps.count) - 1.0);
@@ -355,7 +356,7 @@ mod tests {
         streaks.texels[..STREAK_COLUMNS * STREAK_ROWS].iter().map(|texel| f64::from(texel[0]))
     }
 
-    /// That of a pixel of one part.
+    /// The patch of a pixel that has one part.
     fn patch(streaks: &Streaks, place: [f64; 2], dx: [f64; 2], dy: [f64; 2]) -> Patch {
         let [_, middle, _] = streaks.patches(place, 0.0, dx, dy);
         middle

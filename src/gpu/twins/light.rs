@@ -287,14 +287,14 @@ pub fn group() -> Group {
             "part_of_side",
             "out1(part_of_side(in2(0u), in2(2u)));",
             |i| {
-                // One in eight is unknown.
-                let unknown = i.random.below(8) == 0;
+                // Some are unknown, and some change nothing.
+                let kind = i.random.below(8);
                 for _ in 0..4 {
-                    if unknown {
-                        i.push(1e33);
-                    } else {
-                        i.signed(1e-1, 1e3);
-                    }
+                    match kind {
+                        0 => i.push(1e33),
+                        1 if i.random.below(2) == 0 => i.push(0.0),
+                        _ => i.signed(1e-1, 1e4),
+                    };
                 }
             },
             |i, o| {
