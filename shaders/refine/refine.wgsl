@@ -239,13 +239,17 @@ fn level_at(off: vec2<f32>) -> f32 {
 
 // The scale on which strips are of equal width, and back.
 fn spread(distance: f32) -> f32 {
-    let x = abs(distance) / NARROWEST;
+    let x = abs(distance) / narrowest();
     let size = log(x + sqrt(x * x + 1.0));
     return select(size, -size, distance < 0.0);
 }
 
 fn gathered(x: f32) -> f32 {
-    return 0.5 * NARROWEST * (exp(x) - exp(-x));
+    return 0.5 * narrowest() * (exp(x) - exp(-x));
+}
+
+fn narrowest() -> f32 {
+    return select(MATTER_NARROWEST, NARROWEST, samples == CURVE_SAMPLES);
 }
 
 // The level at the centre of the pixel that go_to_pixel went to, and its change to the next pixel right and down.

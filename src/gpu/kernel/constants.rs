@@ -168,6 +168,7 @@ fn all() -> Vec<(&'static str, Value)> {
         AROUND_AXIS: f32 = geodesic::AROUND_AXIS;
         CURVE_SAMPLES: u32 = refine::CURVE_SAMPLES;
         NARROWEST: f32 = refine::NARROWEST;
+        MATTER_NARROWEST: f32 = refine::MATTER_NARROWEST;
         CAPTURED_DENSITY: f32 = refine::CAPTURED_DENSITY;
         MATTER_CAPTURED_DENSITY: f32 = refine::MATTER_CAPTURED_DENSITY;
         FEWEST_STRIPS: u32 = refine::FEWEST_STRIPS;

@@ -105,18 +105,18 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "spread",
-            "out1(spread(in1(0u)));",
+            "spread narrowest",
+            "samples = CURVE_SAMPLES; out1(spread(in1(0u)));",
             |i| {
                 i.signed(1e-4, 16.0);
             },
-            |i, o| o.near(spread(i.x(0)), 1.0),
+            |i, o| o.near(spread(i.x(0), NARROWEST), 1.0),
             ROUNDING,
         ),
         twin(
             file,
             "gathered",
-            "out1(gathered(in1(0u)));",
+            "samples = CURVE_SAMPLES; out1(gathered(in1(0u)));",
             |i| {
                 i.even(-8.0, 8.0);
             },
