@@ -248,6 +248,7 @@ fn gathered(x: f32) -> f32 {
     return 0.5 * narrowest() * (exp(x) - exp(-x));
 }
 
+// The width of the narrowest strips, pixels.
 fn narrowest() -> f32 {
     return select(MATTER_NARROWEST, NARROWEST, samples == CURVE_SAMPLES);
 }

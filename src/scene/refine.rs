@@ -46,7 +46,7 @@ pub fn curve_samples(matter: bool) -> u32 {
 
 /// Strips get narrower towards the curve down to about this width, pixels: images that are narrower add some hundredths
 /// to a pixel's light. With narrower strips fewer are left for wider images. Found by trial, as is the density below:
-/// with 0.01 and 0.5 about twice as many pixels are off by 20 %, and with 0.1 thin images are missed.
+/// with 0.01 and 0.5 about twice as many pixels are off by 20 %, and with 0.12 thin images are missed.
 pub(crate) const NARROWEST: f64 = 0.02;
 /// `NARROWEST` for pixels of `MATTER_CURVE_SAMPLES`.
 pub(crate) const MATTER_NARROWEST: f64 = 0.01;
