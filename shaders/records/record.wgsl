@@ -19,7 +19,8 @@
 //                                              share of the light from behind that matter lets pass, `turn` is turn_of
 //                                              of the record where its sky is seen, else 0.
 //
-// The fragment that uses records declares take_record, and shading declares seen_crossing and seen_sky.
+// The fragment that uses records declares take_record, and shading declares seen_crossing, seen_emission
+// and seen_sky.
 
 #import constants
 #import shared/fate

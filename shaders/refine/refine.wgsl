@@ -7,12 +7,12 @@
 // time until the last of them ends. One row takes the pixels that the second of those listed.
 
 #import constants
-#import camera/critical
-#import camera/observer
 #import camera/projection
 #import emit/clouds
 #import records/record
 #import records/edges
+#import refine/cell
+#import refine/strips
 #import shade/shade
 #import shared/fate
 #import shared/math
@@ -56,10 +56,11 @@ const NO_LANE: u32 = LANES;
 // shows. Every one takes workgroup memory, which bounds how many threads run at once.
 const LANE_ORDERS: u32 = 8u;
 
-// The sample of each thread: u of its crossings by order, 0 where there is none, and with FOOTPRINTS their azimuth and
-// delay; its sky direction, and its fate as a number; how far it turned (sample_turn); its light times its share of the
-// pixel.
+// The sample of each thread: u of its crossings by order, 0 where there is none, g of each, 0 where it is not known,
+// and with FOOTPRINTS azimuth and delay; its sky direction, and its fate as a number; how far it turned (sample_turn);
+// its light times its share of the pixel.
 var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
+var<workgroup> lane_g: array<f32, LANES * LANE_ORDERS>;
 var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
 var<workgroup> lane_sky: array<vec4<f32>, LANES>;
 var<workgroup> lane_turn: array<f32, LANES>;
@@ -71,29 +72,6 @@ var<private> lane: u32;
 // The lanes of the samples before and after this one along the strip or row, and before and after across; NO_LANE
 // where there is none.
 var<private> beside: vec4<u32>;
-
-// The strips of a pixel along the critical curve. Distances are in pixels, positive where rays escape.
-struct Strips {
-    // Unit vector from the curve outwards, in pixels right and down.
-    normal: vec2<f32>,
-    // The distance of the pixel's centre.
-    level: f32,
-    // The change of the curve's level in a pixel, at the curve.
-    slope: f32,
-    // `spread` of the least and the greatest distance in the pixel.
-    range: vec2<f32>,
-    // The number of strips where rays are captured.
-    captured: u32,
-}
-
-struct Cell {
-    // Place in the pixel, 0 .. 1, were the curve straight.
-    place: vec2<f32>,
-    // The distance from the curve that it is meant to have.
-    distance: f32,
-    // The cell's share of the pixel.
-    weight: f32,
-}
 
 @compute @workgroup_size(64)
 fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -141,6 +119,8 @@ fn refine_sample(entry: u32, end: u32) {
         }
         let at = lane * LANE_ORDERS + crossing.order;
         lane_u[at] = crossing.u;
+        // Inside the horizon it may be no number at all.
+        lane_g[at] = select(0.0, crossing.g, crossing.g > 0.0 && crossing.g < 1e30);
         if FOOTPRINTS {
             lane_place[at] = vec2<f32>(crossing.place.azimuth, crossing.place.delay);
         }
@@ -167,17 +147,12 @@ fn in_quarters() -> bool {
     return samples == EDGE_SAMPLES;
 }
 
-fn strip_count() -> u32 {
-    return samples / 2u;
-}
-
-fn sample_index() -> u32 {
-    return lane % samples;
-}
-
 // Whether the critical curve, and thin images with it, may cross this thread's pixel. go_to_cell sets it, so that
 // level_about is called at one place only; in a pixel in quarters only for the first lane.
 var<private> near_curve: bool;
+
+// Cell::first_half of this thread's sample in a strip.
+var<private> first_half: f32;
 
 // Goes to the place of this thread's sample in the tile's pixel `id`; the share of the pixel that it stands for.
 fn go_to_cell(id: vec2<u32>) -> f32 {
@@ -200,6 +175,7 @@ fn go_to_cell(id: vec2<u32>) -> f32 {
     beside = beside_cell(strip > 0u && (strip > strips.captured || !outside),
         strip + 1u < strip_count() && (strip + 1u < strips.captured || outside), 2u);
     sample_shift = corrected_place(strips, cell) - 0.5;
+    first_half = cell.first_half;
     return cell.weight;
 }
 
@@ -216,175 +192,6 @@ fn beside_cell(before: bool, after: bool, step: u32) -> vec4<u32> {
 // The place of this thread's sample in its pixel, 0 .. 1: the middle of its quarter.
 fn quarter_place() -> vec2<f32> {
     return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
-}
-
-// A point in the direction seen at the pixel's centre, and its changes to the next pixel right and down: the image
-// plane, or its tangent, which goes on beyond the border of a cube's face.
-var<private> level_origin: vec3<f32>;
-var<private> level_right: vec3<f32>;
-var<private> level_down: vec3<f32>;
-
-// Goes to the pixel about `at`.
-fn go_to_pixel(at: vec2<f32>) {
-    let p = camera_point(at.x, at.y);
-    level_origin = in_frame(p.at);
-    level_right = in_frame(p.dx);
-    level_down = in_frame(p.dy);
-}
-
-// The level of the critical curve at so many pixels right of the pixel's centre and below it.
-fn level_at(off: vec2<f32>) -> f32 {
-    return curve_level(aberrate(normalize(level_origin + level_right * off.x + level_down * off.y)).n);
-}
-
-// The scale on which strips are of equal width, and back.
-fn spread(distance: f32) -> f32 {
-    let x = abs(distance) / narrowest();
-    let size = log(x + sqrt(x * x + 1.0));
-    return select(size, -size, distance < 0.0);
-}
-
-fn gathered(x: f32) -> f32 {
-    return 0.5 * narrowest() * (exp(x) - exp(-x));
-}
-
-// The width of the narrowest strips, pixels.
-fn narrowest() -> f32 {
-    return select(MATTER_NARROWEST, NARROWEST, samples == CURVE_SAMPLES);
-}
-
-// The level at the centre of the pixel that go_to_pixel went to, and its change to the next pixel right and down.
-// (Compilers inline level_at at every call: the loop keeps calls few.)
-fn level_about() -> vec3<f32> {
-    var centre = 0.0;
-    var change = vec2<f32>(0.0);
-    for (var i = 0u; i < 5u; i += 1u) {
-        let is_centre = i == 4u;
-        let axis = select(select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), i >= 2u), vec2<f32>(0.0), is_centre);
-        let side = select(-1.0, 1.0, (i & 1u) == 1u);
-        let level = level_at(axis * (side * LEVEL_STEP));
-        centre = level;
-        change += select(axis * (side * level / (2.0 * LEVEL_STEP)), vec2<f32>(0.0), is_centre);
-    }
-    return vec3<f32>(centre, change);
-}
-
-// The curve's distance from the centre of a pixel, pixels, if the level is linear; `about`: its level_about.
-fn curve_distance(about: vec3<f32>) -> f32 {
-    return abs(about.x) / max(length(about.yz), 1e-20);
-}
-
-// The strips of the pixel that go_to_pixel went to; `about`: its level_about.
-fn strips_of(about: vec3<f32>) -> Strips {
-    let here = about.x;
-    let change = about.yz;
-    let steepness = max(length(change), 1e-20);
-    let normal = select(vec2<f32>(1.0, 0.0), change / steepness, steepness > 1e-20);
-    let step = -here / steepness;
-    var distance = -step;
-    var slope = steepness;
-    // Place and level on both sides of the curve; the place looked at last; -1 if that replaced `low`, 1 if `high`, and
-    // 0 before the search.
-    var low = vec2<f32>(0.0);
-    var high = vec2<f32>(0.0);
-    var found = 0.0;
-    var side = 0.0;
-    var rise = 0.0;
-    // Turn 0 is a step of Newton's method, which suffices nearly everywhere; turns 1 and 2 look at both ends; then
-    // SEARCH_STEPS turns search by the Illinois method, and the last two take the slope there. One loop, so that
-    // level_at is inlined once.
-    for (var i = 0u; i < SEARCH_STEPS + 5u; i += 1u) {
-        // So far from the curve strips are even.
-        if abs(step) >= FARTHEST {
-            break;
-        }
-        let met = (low.x * high.y - high.x * low.y) / max(high.y - low.y, 1e-20);
-        let searching = i > 2u && i < SEARCH_STEPS + 3u;
-        let beyond = select(-1.0, 1.0, i == SEARCH_STEPS + 4u);
-        var place = select(found + beyond * LEVEL_STEP, met, searching);
-        place = select(select(select(place, SEARCH_REACH, i == 2u), -SEARCH_REACH, i == 1u), step, i == 0u);
-        let value = level_at(normal * place);
-        if i == 0u {
-            if abs(step) < SEARCH_REACH && abs(value) <= EVEN_LEVEL * steepness {
-                distance = value / steepness - step;
-                break;
-            }
-            continue;
-        }
-        if i > SEARCH_STEPS + 2u {
-            rise += beyond * value;
-            distance = -found;
-            slope = max(rise / (2.0 * LEVEL_STEP), 1e-20);
-            continue;
-        }
-        found = place;
-        let outside = value > 0.0;
-        // While the ends are looked at: `low` and `high` are they, and then one of them the centre.
-        low.y *= select(1.0, 0.5, searching && outside && side > 0.0);
-        high.y *= select(1.0, 0.5, searching && !outside && side < 0.0);
-        high = select(high, vec2<f32>(place, value), i == 2u || (searching && outside));
-        low = select(low, vec2<f32>(place, value), i == 1u || (searching && !outside));
-        side = select(0.0, select(-1.0, 1.0, outside), searching);
-        if i == 2u {
-            if !(low.y < 0.0 && high.y > 0.0) {
-                break;
-            }
-            high = select(high, vec2<f32>(0.0, here), here > 0.0);
-            low = select(vec2<f32>(0.0, here), low, here > 0.0);
-        }
-    }
-    return strips_at(distance, normal, slope);
-}
-
-fn strips_at(distance: f32, normal: vec2<f32>, slope: f32) -> Strips {
-    let level = clamp(distance, -FARTHEST, FARTHEST);
-    let reach = 0.5 * (abs(normal.x) + abs(normal.y));
-    let range = vec2<f32>(spread(level - reach), spread(level + reach));
-    let inside = max(-range.x, 0.0) * select(MATTER_CAPTURED_DENSITY, CAPTURED_DENSITY, samples == CURVE_SAMPLES);
-    let count = strip_count();
-    let share = f32(count) * inside / max(inside + max(range.y, 0.0), 1e-20);
-    let fewest = FEWEST_STRIPS * count / 16u;
-    let both = clamp(u32(round(share)), fewest, count - fewest);
-    let captured = select(select(both, count, range.y <= 0.0), 0u, range.x >= 0.0);
-    return Strips(normal, level, slope, range, captured);
-}
-
-// The distance at `strip`, a whole number at the begin of one of those on the side `outside` of the curve.
-fn strip_distance(strips: Strips, outside: bool, strip: f32) -> f32 {
-    let captured = f32(strips.captured);
-    let first = select(strips.range.x, max(strips.range.x, 0.0), outside);
-    let last = select(min(strips.range.y, 0.0), strips.range.y, outside);
-    let outer = (strip - captured) / max(f32(strip_count()) - captured, 1.0);
-    let share = select(strip / max(captured, 1.0), outer, outside);
-    return gathered(first + (last - first) * share);
-}
-
-// The cell of this thread's sample.
-fn strip_cell(strips: Strips) -> Cell {
-    let strip = f32(sample_index() / 2u);
-    let outside = sample_index() / 2u >= strips.captured;
-    let normal = strips.normal;
-    let begin = strip_distance(strips, outside, strip) - strips.level;
-    let middle = strip_distance(strips, outside, strip + 0.5) - strips.level;
-    let end = strip_distance(strips, outside, strip + 1.0) - strips.level;
-    let tangent = vec2<f32>(-normal.y, normal.x);
-    let foot = normal * middle;
-    let wide = select(vec2<f32>(1e-6), tangent, abs(tangent) > vec2<f32>(1e-6));
-    let one = (-0.5 - foot) / wide;
-    let other = (0.5 - foot) / wide;
-    let begins = max(min(one, other), vec2<f32>(-1.0));
-    let ends = min(max(one, other), vec2<f32>(1.0));
-    let share = 0.25 + 0.5 * f32(lane & 1u);
-    let along = mix(max(begins.x, begins.y), min(ends.x, ends.y), share);
-    let weight = 0.5 * (share_below(end, normal) - share_below(begin, normal));
-    return Cell(0.5 + foot + tangent * along, strips.level + middle, weight);
-}
-
-// The place of a cell's sample in its pixel, the curve being bent.
-fn corrected_place(strips: Strips, cell: Cell) -> vec2<f32> {
-    let foot = cell.place - strips.normal * cell.distance;
-    let off = clamp(level_at(foot - 0.5) / strips.slope, -0.25, 0.25);
-    return cell.place - strips.normal * select(0.0, off, abs(strips.level) < BENT);
 }
 
 fn mean_light() -> vec4<f32> {
@@ -451,6 +258,12 @@ fn crossing_in(other: u32, order: u32) -> f32 {
     return select(0.0, known, other < NO_LANE && order < LANE_ORDERS);
 }
 
+// g of the crossing of `order` in a lane; 0 where it is not known.
+fn g_in(other: u32, order: u32) -> f32 {
+    let known = lane_g[min(other, LANES - 1u) * LANE_ORDERS + min(order, LANE_ORDERS - 1u)];
+    return select(0.0, known, crossing_in(other, order) > 0.0);
+}
+
 // The change of a crossing's place from one cell to the next, as change_of_sky.
 fn change_of_place(here: Crossing, order: u32, others: vec2<u32>) -> EmissionPoint {
     let u = vec2<f32>(crossing_in(others.x, order), crossing_in(others.y, order));
@@ -475,50 +288,55 @@ fn seen_sky(here: Record) -> Record {
 
 fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
-    let order = crossing.order;
     if FOOTPRINTS && crossing.u > 0.0 {
-        crossing.dx = change_of_place(crossing, order, beside.xy);
-        crossing.dy = change_of_place(crossing, order, beside.zw);
+        crossing.dx = change_of_place(crossing, crossing.order, beside.xy);
+        crossing.dy = change_of_place(crossing, crossing.order, beside.zw);
     }
-    let here = covered(crossing.u, vec4<f32>(crossing_in(beside.x, order), crossing_in(beside.y, order),
-        crossing_in(beside.z, order), crossing_in(beside.w, order)));
-    crossing.share = here.x;
-    // Where nothing shines, as inside the horizon, g and the delay may be no numbers at all.
-    let shines = crossing.share > 0.0 || (crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y);
-    crossing.g = select(1.0, crossing.g, shines);
-    crossing.place.delay = select(0.0, crossing.place.delay, shines);
-    crossing.u = select(0.0, clamp(here.y, frame.plane_u.x, frame.plane_u.y), crossing.u > 0.0);
     return crossing;
 }
 
-// Share of this sample's cell in which its crossing at u lies on the disk, and the middle of what u is there, u
-// changing evenly over the cell; `others`: u before and after it in both directions, 0 where there is none.
-fn covered(u: f32, others: vec4<f32>) -> vec2<f32> {
-    let slope = vec2<f32>(change_of_u(u, others.xy), change_of_u(u, others.zw));
-    let share = share_below(frame.disk_u.y - u, slope) - share_below(frame.disk_u.x - u, slope);
-    let half = 0.5 * (abs(slope.x) + abs(slope.y));
-    let low = max(u - half, frame.disk_u.x);
-    let high = min(u + half, frame.disk_u.y);
-    // The less of the cell is left out, the less does that move the middle of the rest.
-    let part = clamp(2.0 * (1.0 - share), 0.0, 1.0);
-    return vec2<f32>(clamp(share, 0.0, 1.0), select(u, mix(u, 0.5 * (low + high), part), low < high));
+// The light of a crossing over its cell, as crossing_emission: the mean of its halves.
+fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
+    let order = crossing.order;
+    let others = vec4<f32>(crossing_in(beside.x, order), crossing_in(beside.y, order), crossing_in(beside.z, order),
+        crossing_in(beside.w, order));
+    let others_g = vec4<f32>(g_in(beside.x, order), g_in(beside.y, order), g_in(beside.z, order),
+        g_in(beside.w, order));
+    let cell = cell_crossing(crossing.u, g_in(lane, order), others, others_g);
+    let halves = not_inlined(select(2u, 1u, in_quarters()));
+    var emission = vec4<f32>(0.0);
+    for (var half = 0u; half < halves; half += 1u) {
+        let side = f32(half) * 2.0 - 1.0;
+        var part = half_cell(cell, side);
+        var weight = select(first_half, 1.0 - first_half, half == 1u);
+        if in_quarters() {
+            part = cell;
+            weight = 1.0;
+        }
+        let seen = covered(part);
+        // Where nothing shines, as inside the horizon, the delay may be no number at all.
+        if seen.x > 0.0 {
+            emission += weight * crossing_emission(here, part_of_crossing(crossing, seen, side), open);
+        }
+    }
+    return emission;
 }
 
-fn change_of_u(u: f32, others: vec2<f32>) -> f32 {
-    let there = others > vec2<f32>(0.0);
-    let difference = select(u, others.y, there.y) - select(u, others.x, there.x);
-    return difference * select(1.0, 0.5, all(there));
-}
-
-// Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two
-// sides.
-fn share_below(level: f32, slope: vec2<f32>) -> f32 {
-    let most = max(max(abs(slope.x), abs(slope.y)), LEAST_SLOPE);
-    let least = min(abs(slope.x), abs(slope.y));
-    let corner = max(0.5 * (most + least) - abs(level), 0.0);
-    let cut = corner * corner / (2.0 * most * max(least, LEAST_SLOPE));
-    let by_corner = select(cut, 1.0 - cut, level > 0.0);
-    return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
+// A crossing in the half of its cell on this side, or in all of it; `seen`: its share, u and g.
+fn part_of_crossing(crossing: Crossing, seen: vec3<f32>, side: f32) -> Crossing {
+    var part = crossing;
+    part.share = seen.x;
+    part.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
+    part.g = seen.z;
+    part.place.ln_r = -log(part.u);
+    if FOOTPRINTS && !in_quarters() {
+        let across = crossing.dy;
+        part.place.azimuth += 0.25 * side * across.azimuth;
+        part.place.delay += 0.25 * side * across.delay;
+        let halved = EmissionPoint(0.5 * across.ln_r, 0.5 * across.azimuth, 0.5 * across.delay);
+        part.dy = halved;
+    }
+    return part;
 }
 
 // How much u of the crossing of `order` may change between the samples of a pixel.

@@ -25,6 +25,10 @@ fn seen_crossing() -> Crossing {
     return crossing;
 }
 
+fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
+    return crossing_emission(here, crossing, open);
+}
+
 fn seen_sky(here: Record) -> Record {
     return with_sky(here);
 }

@@ -21,6 +21,7 @@
 #requires fn medium_before(k: u32) -> vec4<f32>
 #requires fn more_crossings() -> bool
 #requires fn seen_crossing() -> Crossing
+#requires fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32>
 #requires fn seen_sky(here: Record) -> Record
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -92,7 +93,8 @@ fn is_occluded(crossing: Crossing) -> bool {
 var<private> seen_through: f32;
 var<private> seen_turn: f32;
 
-// Light and alpha of a record. seen_crossing gives next_crossing with its share, seen_sky the record with its sky.
+// Light and alpha of a record. seen_crossing gives next_crossing, with its share unless seen_emission finds that;
+// seen_emission gives its crossing_emission, and seen_sky the record with its sky.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
@@ -109,8 +111,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
             open *= medium.w;
             given = k + 1u;
         }
-        let mu = min(here.polar_momentum * crossing.u * crossing.g, 1.0);
-        var emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);
+        var emission = seen_emission(here, crossing, open);
         if OCCLUDED && is_occluded(crossing) {
             emission = vec4<f32>(0.0);
         }
@@ -141,6 +142,12 @@ fn pixel_light(here: Record) -> vec4<f32> {
         }
     }
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
+}
+
+// The light that a crossing adds to a ray of which the share `open` comes this far; w: its opacity.
+fn crossing_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
+    let mu = min(here.polar_momentum * crossing.u * crossing.g, 1.0);
+    return emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);
 }
 
 fn crossing_shift(here: Record, crossing: Crossing) -> Shift {

@@ -5,14 +5,16 @@
 use super::record::{derivative_of_direction, derivative_of_place};
 use super::record_source::RecordSource;
 use super::shade::Shader;
+use crate::emit::{Crossing, Emission, EmissionPoint};
 use crate::physics::lens::critical::CurveLevel;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::scene::Scene;
+use crate::scene::cell::{CellCrossing, Crossed};
 use crate::scene::observer::Lens;
-use crate::scene::record::Record;
+use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
 use crate::scene::refine::{
     CURVE_REACH, CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH,
-    SEARCH_STEPS, Strips, beside_quarter, covered, curve_samples, quarter_place,
+    SEARCH_STEPS, Strips, beside_quarter, curve_samples, quarter_place,
 };
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -22,7 +24,6 @@ use std::f64::consts::PI;
 pub struct Refiner<'a> {
     /// Gives crossings of the whole plane; nothing is hidden in it.
     plane: RecordSource<'a>,
-    plane_u: Option<[f64; 2]>,
     disk_u: Option<[f64; 2]>,
     /// Where the disk hides what is behind it.
     opaque_u: Option<[f64; 2]>,
@@ -30,6 +31,15 @@ pub struct Refiner<'a> {
     level: CurveLevel,
     /// Samples of a pixel that the critical curve runs through.
     curve_samples: u32,
+}
+
+/// Where a sample lies, and its cell's share of the pixel.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    at: [f64; 2],
+    weight: f64,
+    /// `Cell::first_half`; `None`: the cell is not seen in halves.
+    first_half: Option<f64>,
 }
 
 /// The records of a pixel's samples, and the samples beside each.
@@ -42,11 +52,9 @@ impl<'a> Refiner<'a> {
     /// `plane`: of records of the whole plane (`Recorder::whole_plane`).
     pub fn new(scene: &Scene, lens: &'a Lens, plane: RecordSource<'a>) -> Self {
         let emitters = scene.emitters();
-        let (plane_u, disk_u) = (emitters.plane_u(), emitters.disk_u());
         Self {
             plane,
-            plane_u,
-            disk_u,
+            disk_u: emitters.disk_u(),
             opaque_u: emitters.opaque_u(),
             lens,
             level: CurveLevel::new(&lens.observer.frame),
@@ -78,19 +86,21 @@ impl<'a> Refiner<'a> {
             return None;
         }
         let samples = Samples { records: &records, beside: &beside_quarter };
-        Some(self.mean(shader, &samples, |index| (places[index as usize % 4], 0.25)))
+        let cell = |index| Place { at: places[index as usize % 4], weight: 0.25, first_half: None };
+        Some(self.mean(shader, &samples, cell))
     }
 
     fn light_of_strips(&self, shader: &Shader<'_>, at: [f64; 2]) -> [f64; 4] {
         let level = LevelAbout::new(self.lens, &self.level, at);
         let (strips, slope) = level.strips(self.curve_samples);
         let mut records = ArrayVec::<Record, { CURVE_SAMPLES as usize }>::new();
-        let mut places = [([0.0; 2], 0.0); CURVE_SAMPLES as usize];
+        let mut places = [Place::default(); CURVE_SAMPLES as usize];
         for (place, index) in places.iter_mut().zip(0..self.curve_samples) {
             let cell = strips.cell(index);
             let distance = level.at(strips.foot(&cell).map(|c| c - 0.5)) / slope;
-            *place = (place_about(at, strips.corrected(&cell, distance)), cell.weight);
-            records.push(self.sample(place.0, self.curve_samples));
+            let at = place_about(at, strips.corrected(&cell, distance));
+            *place = Place { at, weight: cell.weight, first_half: Some(cell.first_half) };
+            records.push(self.sample(at, self.curve_samples));
         }
         let beside = |index| strips.beside(index);
         let samples = Samples { records: &records, beside: &beside };
@@ -109,47 +119,57 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// The mean light of cells; `place`: of each one's sample, and its weight.
-    fn mean(&self, shader: &Shader<'_>, samples: &Samples<'_>, place: impl Fn(u32) -> ([f64; 2], f64)) -> [f64; 4] {
+    /// The mean light of cells.
+    fn mean(&self, shader: &Shader<'_>, samples: &Samples<'_>, place: impl Fn(u32) -> Place) -> [f64; 4] {
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         for index in 0..samples.records.len() as u32 {
-            let ([x, y], weight) = place(index);
-            let Some(record) = self.completed(samples, index) else { continue };
-            let light = shader.shade_record(&record, x, y);
+            let Place { at: [x, y], weight, first_half } = place(index);
+            let Some(record) = samples.completed(index) else { continue };
+            let light = shader.shade_record_with(&record, x, y, |crossing, open| {
+                let mut emission = Emission { light: [0.0; 3], opacity: 0.0 };
+                for (part, weight) in self.seen_parts(&samples.over_cell(index, crossing), crossing, first_half) {
+                    let seen = shader.emission(&record, &part, open);
+                    (0..3).for_each(|c| emission.light[c] += weight * seen.light[c]);
+                    emission.opacity += weight * seen.opacity;
+                }
+                emission
+            });
             (0..4).for_each(|c| sum[c] += weight * light[c]);
             total += weight;
         }
         sum.map(|v: f64| v / total.max(f64::MIN_POSITIVE))
     }
 
-    /// The record of a sample with the footprints of its cell, and the share of the cell that the disk covers.
-    fn completed(&self, samples: &Samples<'_>, index: u32) -> Option<Record> {
-        let mut record = samples.records.get(index as usize)?.clone();
-        let beside = (samples.beside)(index)
-            .map(|pair| pair.map(|other| other.and_then(|other| samples.records.get(other as usize))));
-        if record.fate == Fate::Escaped {
-            record.footprint = beside.map(|[before, after]| {
-                let change = derivative_of_direction(&record, before, after);
-                with_whole_turns(change, record.direction, change_of_turn(&record, before, after))
-            });
-        }
-        for crossing in &mut record.crossings {
-            crossing.footprint = beside.map(|[before, after]| derivative_of_place(crossing, before, after));
-            let u = |there: Option<&Record>| {
-                there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order)).map_or(0.0, |c| c.u)
-            };
-            let covered = self.disk_u.map(|disk_u| covered(crossing.u, beside.map(|pair| pair.map(u)), disk_u));
-            let (share, covered_u) = covered.unwrap_or((0.0, crossing.u));
-            crossing.share = share;
-            if let Some([outer, inner]) = self.plane_u {
-                // Where nothing shines g may be no number at all.
-                if crossing.share == 0.0 && !(crossing.u >= outer && crossing.u <= inner) {
-                    crossing.g = 1.0;
-                }
-                crossing.u = covered_u.clamp(outer, inner);
+    /// The parts of its cell in which a crossing is seen, the whole or two halves, as crossings of their own, each with
+    /// its share of the cell. Those that the disk does not cover are left out.
+    fn seen_parts(
+        &self,
+        cell: &CellCrossing,
+        crossing: &Crossing,
+        first_half: Option<f64>,
+    ) -> ArrayVec<(Crossing, f64), 2> {
+        let mut parts = ArrayVec::new();
+        let Some(disk_u) = self.disk_u else { return parts };
+        let whole = [(0.0, 1.0)];
+        let halves = first_half.map(|first| [(-1.0, first), (1.0, 1.0 - first)]);
+        for (side, weight) in halves.as_ref().map_or(&whole[..], |halves| halves) {
+            let covered = if first_half.is_some() { cell.half(*side) } else { *cell }.covered(disk_u);
+            if covered.share <= 0.0 {
+                continue;
             }
+            let u = covered.u.clamp(disk_u[0], disk_u[1]);
+            let mut part = Crossing { u, g: covered.g, share: covered.share, ..*crossing };
+            part.place.ln_r = -u.ln();
+            let [_, across] = &mut part.footprint;
+            if first_half.is_some() && *across != UNKNOWN_EMISSION_POINT {
+                part.place.azimuth += 0.25 * side * across.azimuth;
+                part.place.delay += 0.25 * side * across.delay;
+                *across =
+                    EmissionPoint { ln_r: 0.5 * across.ln_r, azimuth: 0.5 * across.azimuth, delay: 0.5 * across.delay };
+            }
+            parts.push((part, *weight));
         }
-        Some(record)
+        parts
     }
 
     /// How evenly the samples of the pixel about `at` change from one to the next.
@@ -170,6 +190,38 @@ impl<'a> Refiner<'a> {
         let [first, rest @ ..] = records;
         let differs = rest.iter().any(|other| other.fate != first.fate);
         if differs { Evenness::Ragged } else { Evenness::Even }
+    }
+}
+
+impl<'a> Samples<'a> {
+    /// The records beside that of a sample.
+    fn beside(&self, index: u32) -> [[Option<&'a Record>; 2]; 2] {
+        (self.beside)(index).map(|pair| pair.map(|other| other.and_then(|other| self.records.get(other as usize))))
+    }
+
+    /// The record of a sample with the footprints of its cell.
+    fn completed(&self, index: u32) -> Option<Record> {
+        let mut record = self.records.get(index as usize)?.clone();
+        let beside = self.beside(index);
+        if record.fate == Fate::Escaped {
+            record.footprint = beside.map(|[before, after]| {
+                let change = derivative_of_direction(&record, before, after);
+                with_whole_turns(change, record.direction, change_of_turn(&record, before, after))
+            });
+        }
+        for crossing in &mut record.crossings {
+            crossing.footprint = beside.map(|[before, after]| derivative_of_place(crossing, before, after));
+        }
+        Some(record)
+    }
+
+    /// A crossing of a sample over its cell.
+    fn over_cell(&self, index: u32, crossing: &Crossing) -> CellCrossing {
+        let same = |there: Option<&Record>| {
+            let same = there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order));
+            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g))
+        };
+        CellCrossing::new(Crossed::new(crossing.u, crossing.g), self.beside(index).map(|pair| pair.map(same)))
     }
 }
 

@@ -2,8 +2,8 @@
 //! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not
 //! know how the records were made.
 
-use crate::emit::PlaneLight;
 use crate::emit::medium::media_in_order;
+use crate::emit::{Crossing, Emission, PlaneLight};
 use crate::error::Result;
 use crate::physics::orbit::zamo_frequency;
 use crate::physics::trace::Fate;
@@ -53,8 +53,19 @@ impl<'a> Shader<'a> {
     /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
     /// shows nothing.
     pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
+        self.shade_record_with(here, x, y, |crossing, open| self.emission(here, crossing, open))
+    }
+
+    /// The light of a record, each of whose crossings adds what `seen_emission` gives in the place of `emission`.
+    pub fn shade_record_with(
+        &self,
+        here: &Record,
+        x: f64,
+        y: f64,
+        seen_emission: impl Fn(&Crossing, f64) -> Emission,
+    ) -> [f64; 4] {
         match (self.scene.view, self.lens.mapping.has_look_direction(x, y)) {
-            (View::Light, true) => self.pixel_light(here, self.shown(x, y)),
+            (View::Light, true) => self.pixel_light(here, self.shown(x, y), seen_emission),
             (View::Light, false) => [0.0; 4],
             (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
             (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
@@ -70,7 +81,12 @@ impl<'a> Shader<'a> {
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share. `shown`: the part of the ray that is seen; where
     /// it ends, what is behind takes the sky's place.
-    pub fn pixel_light(&self, here: &Record, shown: Option<Shown>) -> [f64; 4] {
+    fn pixel_light(
+        &self,
+        here: &Record,
+        shown: Option<Shown>,
+        seen_emission: impl Fn(&Crossing, f64) -> Emission,
+    ) -> [f64; 4] {
         let eye = self.lens.place.e_r * self.lens.place.r;
         let mut light = [0.0; 3];
         let mut open = 1.0;
@@ -89,9 +105,7 @@ impl<'a> Shader<'a> {
             if shown.is_some_and(|shown| !shown.shows(crossing, eye)) {
                 continue;
             }
-            let gravity = || nu_static_observer(self.lens, here) / self.nu_zamo_in_plane(crossing.u, here);
-            let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
-            let emission = self.plane.at_crossing(crossing, self.effects.visible_shift(crossing.g, gravity), mu, open);
+            let emission = seen_emission(crossing, open);
             (0..3).for_each(|c| light[c] += emission.light[c]);
             open *= 1.0 - emission.opacity;
         }
@@ -107,6 +121,13 @@ impl<'a> Shader<'a> {
             (0..3).for_each(|c| light[c] += open * rgb[c]);
         }
         [light[0], light[1], light[2], 1.0 - open]
+    }
+
+    /// The light that a crossing adds to a ray of which the share `open` comes this far, and its opacity.
+    pub fn emission(&self, here: &Record, crossing: &Crossing, open: f64) -> Emission {
+        let gravity = || nu_static_observer(self.lens, here) / self.nu_zamo_in_plane(crossing.u, here);
+        let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
+        self.plane.at_crossing(crossing, self.effects.visible_shift(crossing.g, gravity), mu, open)
     }
 
     /// nu(ZAMO at a place of the plane).

@@ -7,6 +7,7 @@ pub mod hole;
 mod on_device;
 pub mod quality;
 pub mod rays;
+pub mod cell;
 pub mod refine;
 pub mod sky;
 mod spread;

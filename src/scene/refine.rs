@@ -16,8 +16,9 @@
 //!
 //! In both each ray stands for a cell of its own, with neighbours. Differences between neighbours tell how the sky and
 //! the crossings of the disk's plane change over the cell, however the rays were found: with that the sky is filtered
-//! over the cell, and the share of it found in which a crossing lies between the disk's radii.
+//! over the cell, and the light of the disk found that falls into it ([`super::cell`]).
 
+use super::cell::share_below;
 use glam::DVec3;
 
 /// The kind of edge that runs through a pixel.
@@ -182,8 +183,9 @@ pub struct Cell {
     pub place: [f64; 2],
     /// The distance from the curve, pixels, that it is meant to have.
     pub distance: f64,
-    /// The cell's share of the pixel.
+    /// The cell's share of the pixel, and of that the share of its first half, that towards captured rays.
     pub weight: f64,
+    pub first_half: f64,
 }
 
 /// The scale on which strips are of equal width: even near the curve, logarithmic farther away.
@@ -246,10 +248,13 @@ impl Strips {
             }
         }
         let at = first + (last - first) * (0.25 + 0.5 * f64::from(index & 1));
+        let [begin, middle_share, end] = [begin, middle, end].map(|distance| share_below(distance, self.normal));
+        let share = end - begin;
         Cell {
             place: [0, 1].map(|c| 0.5 + foot[c] + tangent[c] * at),
             distance: self.level + middle,
-            weight: 0.5 * (share_below(end, self.normal) - share_below(begin, self.normal)),
+            weight: 0.5 * share,
+            first_half: if share > 0.0 { (middle_share - begin) / share } else { 0.5 },
         }
     }
 
@@ -278,40 +283,6 @@ impl Strips {
 /// The quarters beside a quarter, before and after it in its row and its column.
 pub fn beside_quarter(index: u32) -> [[Option<u32>; 2]; 2] {
     [1, 2].map(|side| [(index & side != 0).then(|| index - side), (index & side == 0).then(|| index + side)])
-}
-
-/// The least slope that counts: its square is a normal number in f32, which GPUs do not take for 0.
-pub(crate) const LEAST_SLOPE: f64 = 1e-15;
-
-/// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or
-/// two sides.
-pub(crate) fn share_below(level: f64, slope: [f64; 2]) -> f64 {
-    let [x, y] = slope.map(f64::abs);
-    let (most, least) = (x.max(y).max(LEAST_SLOPE), x.min(y));
-    if level.abs() <= 0.5 * (most - least) {
-        return 0.5 + level / most;
-    }
-    let corner = (0.5 * (most + least) - level.abs()).max(0.0);
-    let cut = corner * corner / (2.0 * most * least.max(LEAST_SLOPE));
-    if level > 0.0 { 1.0 - cut } else { cut }
-}
-
-/// Share of a sample's cell in which its crossing at `u` lies on the disk, and the middle of what u is there: light
-/// that vanishes at the disk's edge does not all over the cell. u changes evenly over the cell; `beside`: u of the
-/// crossing of this order before and after it in both directions, 0 where there is none.
-pub fn covered(u: f64, beside: [[f64; 2]; 2], [outer, inner]: [f64; 2]) -> (f64, f64) {
-    let slope = beside.map(|pair| match pair.map(|other| other > 0.0) {
-        [true, true] => 0.5 * (pair[1] - pair[0]),
-        [true, false] => u - pair[0],
-        [false, true] => pair[1] - u,
-        [false, false] => 0.0,
-    });
-    let share = (share_below(inner - u, slope) - share_below(outer - u, slope)).clamp(0.0, 1.0);
-    let half = 0.5 * (slope[0].abs() + slope[1].abs());
-    let [low, high] = [(u - half).max(outer), (u + half).min(inner)];
-    // The less of the cell is left out, the less does that move the middle of the rest.
-    let part = (2.0 * (1.0 - share)).min(1.0);
-    (share, if low < high { u + part * (0.5 * (low + high) - u) } else { u })
 }
 
 /// u of the crossing of one order in each quarter of a pixel, row by row; 0 where there is none.
@@ -354,27 +325,13 @@ impl Crossings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::cell::{CellCrossing, Covered, Crossed};
     use glam::DVec2;
     use std::f64::consts::TAU;
 
-    /// The share by counting points.
-    fn counted(level: f64, slope: [f64; 2]) -> f64 {
-        const N: u32 = 400;
-        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(N) - 0.5;
-        let below = |(i, j): (u32, u32)| slope[0] * place(i) + slope[1] * place(j) <= level;
-        let points = (0..N).flat_map(|i| (0..N).map(move |j| (i, j)));
-        points.filter(|at| below(*at)).count() as f64 / f64::from(N * N)
-    }
-
-    #[test]
-    fn shares_of_half_planes_are_areas() {
-        for slope in [[1.0, 0.0], [0.3, -1.0], [-0.7, -0.7], [0.0, 1e-3], [2.0, 0.01]] {
-            for part in [-0.9, -0.5, -0.1, 0.0, 0.3, 0.6, 0.99, 1.2] {
-                let level = part * 0.5 * (f64::abs(slope[0]) + f64::abs(slope[1]));
-                let error = share_below(level, slope) - counted(level, slope);
-                assert!(error.abs() < 4e-3, "{slope:?} {level}: {error}");
-            }
-        }
+    fn cover(u: f64, beside: [[f64; 2]; 2], disk_u: [f64; 2]) -> Covered {
+        let crossed = |u| Crossed::new(u, 1.0);
+        CellCrossing::new(crossed(u), beside.map(|pair| pair.map(crossed))).covered(disk_u)
     }
 
     /// Curves in all directions and at all distances: cells fill the pixel, samples lie in it, none across the curve
@@ -430,7 +387,7 @@ mod tests {
                 .filter(|i| u[*i as usize] > 0.0)
                 .map(|i| {
                     let beside = strips.beside(i).map(|pair| pair.map(|o| o.map_or(0.0, |o| u[o as usize])));
-                    strips.cell(i).weight * covered(u[i as usize], beside, disk_u).0
+                    strips.cell(i).weight * cover(u[i as usize], beside, disk_u).share
                 })
                 .sum();
             let at = |distance: f64| share_below(distance - level, strips.normal);
@@ -448,7 +405,7 @@ mod tests {
         let u = [0, 1, 2, 3].map(|index| plane(quarter_place(index)));
         let share = |u: [f64; 4], index: u32| {
             let beside = beside_quarter(index).map(|pair| pair.map(|other| other.map_or(0.0, |i| u[i as usize])));
-            covered(u[index as usize], beside, disk_u).0
+            cover(u[index as usize], beside, disk_u).share
         };
         let mean = (0..4).map(|index| share(u, index)).sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");

@@ -22,6 +22,7 @@ use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic, quadrature};
+use crate::scene::cell;
 use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
@@ -181,7 +182,7 @@ fn all() -> Vec<(&'static str, Value)> {
         EDGE_REACH: f32 = refine::EDGE_REACH;
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
-        LEAST_SLOPE: f32 = refine::LEAST_SLOPE;
+        LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
         PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
 

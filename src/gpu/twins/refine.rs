@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Twins of refine/refine: where samples lie, and how much the disk covers of their cells.
+//! Twins of the files of refine/: where samples lie, and how much the disk covers of their cells.
 
 use super::inputs::Inputs;
 use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
 use crate::cpu::refine::{LevelAbout, with_whole_turns};
 use crate::physics::lens::critical::{CurveLevel, potential_minimum};
-use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, NARROWEST, Strips, beside_quarter, covered, quarter_place,
-    share_below, spread,
-};
+use crate::scene::cell::{CellCrossing, Crossed, share_below};
+use crate::scene::refine::{CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, NARROWEST, Strips, quarter_place, spread};
 use glam::DVec2;
 
 /// Each thread has the four samples of a pixel in arrays of its own, which are a workgroup's in the kernel.
@@ -48,6 +46,28 @@ fn push_samples(i: &mut Inputs) {
         i.push(if missing { 0.0 } else { u.max(1e-4) });
     }
     i.pick(4);
+}
+
+/// A scene, the disk's radii, u and g of a sample and of those beside it, and which part of its cell is seen.
+fn push_cell(i: &mut Inputs) {
+    Kind::Static.push(i);
+    let far = i.log(0.005, 0.1);
+    let near = i.even(far * 1.2, 0.3);
+    let (middle, span) = (i.random.even(0.4 * far, 1.4 * near), i.random.log(1e-4, 0.2));
+    let crossed = |i: &mut Inputs| {
+        let (u, g) = (middle + i.random.even(-0.5, 0.5) * span, i.random.log(0.2, 2.0));
+        let [lacks_u, lacks_g] = [12, 8].map(|part| i.random.below(part) == 0);
+        [if lacks_u { 0.0 } else { u.max(1e-4) }, if lacks_g || lacks_u { 0.0 } else { g }]
+    };
+    let [here, beside @ ..] = [0; 5].map(|_| crossed(i));
+    i.push(here[0].max(1e-4));
+    i.push(here[1]);
+    for of in 0..2 {
+        for there in beside {
+            i.push(there[of]);
+        }
+    }
+    i.pick(3);
 }
 
 fn samples(i: &Inputs) -> Crossings {
@@ -90,7 +110,7 @@ fn strips_of(i: &Inputs) -> (Strips, f64, f64) {
 }
 
 pub fn group() -> Group {
-    let file = "refine/refine";
+    let (file, strips, cell) = ("refine/refine", "refine/strips", "refine/cell");
     let any = Kind::Spinning.constants();
     let twins = vec![
         twin(
@@ -104,7 +124,7 @@ pub fn group() -> Group {
             SAME,
         ),
         twin(
-            file,
+            strips,
             "spread narrowest",
             "samples = CURVE_SAMPLES; out1(spread(in1(0u)));",
             |i| {
@@ -114,7 +134,7 @@ pub fn group() -> Group {
             ROUNDING,
         ),
         twin(
-            file,
+            strips,
             "gathered",
             "samples = CURVE_SAMPLES; out1(gathered(in1(0u)));",
             |i| {
@@ -124,11 +144,11 @@ pub fn group() -> Group {
             ROUNDING,
         ),
         twin(
-            file,
+            strips,
             "strips_at strip_distance strip_cell sample_index strip_count",
             "samples = word(4u); lane = word(0u);
              let cell = strip_cell(strips_at(in1(3u), normalize(in2(1u)), 1.0));
-             out2(cell.place); out1(cell.distance); out1(cell.weight);",
+             out2(cell.place); out1(cell.distance); out1(cell.weight); out1(cell.first_half);",
             |i| {
                 i.pick(64);
                 slope(i);
@@ -142,12 +162,14 @@ pub fn group() -> Group {
                 o.all(cell.place, 1.0);
                 o.near(cell.distance, 1.0);
                 o.near(cell.weight, 1.0);
+                // The share of a narrow cell is a small difference.
+                o.near(cell.first_half, 1.0 / cell.weight.min(1.0));
             },
             // Chords in a corner of the pixel are differences of numbers of a pixel's size.
             2e-4,
         ),
         twin(
-            file,
+            cell,
             "share_below",
             "out1(share_below(in1(0u), in2(1u)));",
             |i| {
@@ -158,20 +180,28 @@ pub fn group() -> Group {
             ROUNDING,
         ),
         twin(
-            file,
-            "covered change_of_u",
-            "enter_samples(); lane = word(7u); samples = 4u; beside = beside_cell(true, true, 2u);
-             out2(covered(lane_u[lane * LANE_ORDERS], vec4<f32>(crossing_in(beside.x, 0u),
-                 crossing_in(beside.y, 0u), crossing_in(beside.z, 0u), crossing_in(beside.w, 0u))));",
-            push_samples,
+            cell,
+            "covered cell_crossing change_of_u half_cell",
+            "enter_scene(); frame.disk_u = in2(1u);
+             let whole = cell_crossing(in1(3u), in1(4u), in4(5u), in4(9u));
+             out1(whole.g);
+             var part = whole;
+             if word(13u) > 0u {
+                 part = half_cell(whole, f32(word(13u)) * 2.0 - 3.0);
+             }
+             out3(covered(part));",
+            push_cell,
             |i, o| {
-                let u = |index: u32| i.x(3 + index as usize);
-                let beside = beside_quarter(i.word(7)).map(|pair| pair.map(|other| other.map_or(0.0, u)));
-                let (share, middle) = covered(u(i.word(7)), beside, [i.x(1), i.x(2)]);
-                o.near(share, 1.0);
-                o.near(middle, 1.0);
+                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4)));
+                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4)), [pair(5), pair(7)]);
+                let part = if i.word(13) > 0 { whole.half(f64::from(i.word(13)) * 2.0 - 3.0) } else { whole };
+                let covered = part.covered([i.x(1), i.x(2)]);
+                o.near(whole.g, 0.0);
+                o.near(covered.share, 1.0);
+                o.near(covered.u, 1.0);
+                o.near(covered.g, 1.0);
             },
-            ROUNDING,
+            2e-4,
         ),
         twin(
             file,
@@ -209,7 +239,7 @@ pub fn group() -> Group {
             ROUNDING,
         ),
         twin(
-            file,
+            strips,
             "strips_of level_about curve_distance level_at go_to_pixel",
             "samples = CURVE_SAMPLES; enter_scene(); go_to_pixel(in2(1u)); let about = level_about();
              let strips = strips_of(about);

@@ -206,7 +206,8 @@ pub fn group() -> Group {
     let twins = vec![
         twin(
             file,
-            "shade_record pixel_light crossing_shift sky_light extended_light to_sky least_patch light_table star_cell",
+            "shade_record pixel_light crossing_emission crossing_shift sky_light extended_light to_sky least_patch \
+             light_table star_cell",
             "let record = enter_record(); out4(shade_record(vec2<u32>(0u), record));",
             push_record,
             light_of_record,
