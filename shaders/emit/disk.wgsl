@@ -20,16 +20,20 @@ fn disk_covers(u: f32) -> f32 {
     return select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
 }
 
-// The light that a crossing on the disk adds to a ray of which the share `open` comes this far; w: the share of the
-// light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
+// The light that a crossing adds to a ray of which the share `open` comes this far, were the disk smooth; w: the share of
+// the light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
 fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
-    var structure = 1.0;
-    if FOOTPRINTS && TURBULENT {
-        structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
-    }
     let profile = disk_profile(crossing.u);
     let opacity = disk_opacity(crossing, profile);
-    return vec4<f32>(open * opacity * structure * emission_law(mu) * disk_light(profile, shift), opacity);
+    return vec4<f32>(open * opacity * emission_law(mu) * disk_light(profile, shift), opacity);
+}
+
+// The factor on that light by the disk's structure.
+fn disk_structure(crossing: Crossing) -> f32 {
+    if FOOTPRINTS && TURBULENT {
+        return turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
+    }
+    return 1.0;
 }
 
 // The share of the light from behind that a crossing hides where the disk's temperature is `profile`.

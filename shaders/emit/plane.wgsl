@@ -6,10 +6,15 @@
 #import emit/shift
 #import records/record
 
-// The light that a crossing adds to a ray of which the share `open` comes this far; w: the share of the light behind
-// that it hides. `mu`: |cosine| of the ray's angle to the normal of the plane, as the matter sees it.
+// The light that a crossing adds to a ray of which the share `open` comes this far, without structure; w: the share of
+// the light behind that it hides. `mu`: |cosine| of the ray's angle to the normal of the plane, as the matter sees it.
 fn emitted_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
     return disk_at_crossing(crossing, shift, mu, open);
+}
+
+// The factor on that light by the emitters' structure.
+fn structure_at_crossing(crossing: Crossing) -> f32 {
+    return disk_structure(crossing);
 }
 
 // The share of the light from behind that a crossing hides.

@@ -314,29 +314,15 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
             weight = 1.0;
         }
         let seen = covered(part);
-        // Where nothing shines, as inside the horizon, the delay may be no number at all.
         if seen.x > 0.0 {
-            emission += weight * crossing_emission(here, part_of_crossing(crossing, seen, side), open);
+            var covering = crossing;
+            covering.share = seen.x;
+            covering.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
+            covering.g = seen.z;
+            emission += weight * crossing_emission(here, covering, open);
         }
     }
     return emission;
-}
-
-// A crossing in the half of its cell on this side, or in all of it; `seen`: its share, u and g.
-fn part_of_crossing(crossing: Crossing, seen: vec3<f32>, side: f32) -> Crossing {
-    var part = crossing;
-    part.share = seen.x;
-    part.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
-    part.g = seen.z;
-    part.place.ln_r = -log(part.u);
-    if FOOTPRINTS && !in_quarters() {
-        let across = crossing.dy;
-        part.place.azimuth += 0.25 * side * across.azimuth;
-        part.place.delay += 0.25 * side * across.delay;
-        let halved = EmissionPoint(0.5 * across.ln_r, 0.5 * across.azimuth, 0.5 * across.delay);
-        part.dy = halved;
-    }
-    return part;
 }
 
 // How much u of the crossing of `order` may change between the samples of a pixel.

@@ -115,7 +115,9 @@ fn pixel_light(here: Record) -> vec4<f32> {
         if OCCLUDED && is_occluded(crossing) {
             emission = vec4<f32>(0.0);
         }
-        light += emission.xyz;
+        if emission.w > 0.0 {
+            light += structure_at_crossing(crossing) * emission.xyz;
+        }
         open *= 1.0 - emission.w;
         // Behind an opaque crossing no other is looked for. If the loop found at its begin that there is none, lavapipe
         // would run all of the body once more.
@@ -144,7 +146,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
 }
 
-// The light that a crossing adds to a ray of which the share `open` comes this far; w: its opacity.
+// The light that a crossing adds to a ray of which the share `open` comes this far, without structure; w: its opacity.
 fn crossing_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
     let mu = min(here.polar_momentum * crossing.u * crossing.g, 1.0);
     return emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);

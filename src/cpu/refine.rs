@@ -5,13 +5,13 @@
 use super::record::{derivative_of_direction, derivative_of_place};
 use super::record_source::RecordSource;
 use super::shade::Shader;
-use crate::emit::{Crossing, Emission, EmissionPoint};
+use crate::emit::{Crossing, Emission};
 use crate::physics::lens::critical::CurveLevel;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::scene::Scene;
-use crate::scene::cell::{CellCrossing, Crossed};
+use crate::scene::cell::{CellCrossing, Covered, Crossed};
 use crate::scene::observer::Lens;
-use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
+use crate::scene::record::Record;
 use crate::scene::refine::{
     CURVE_REACH, CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH,
     SEARCH_STEPS, Strips, beside_quarter, curve_samples, quarter_place,
@@ -148,28 +148,17 @@ impl<'a> Refiner<'a> {
         crossing: &Crossing,
         first_half: Option<f64>,
     ) -> ArrayVec<(Crossing, f64), 2> {
-        let mut parts = ArrayVec::new();
-        let Some(disk_u) = self.disk_u else { return parts };
-        let whole = [(0.0, 1.0)];
-        let halves = first_half.map(|first| [(-1.0, first), (1.0, 1.0 - first)]);
-        for (side, weight) in halves.as_ref().map_or(&whole[..], |halves| halves) {
-            let covered = if first_half.is_some() { cell.half(*side) } else { *cell }.covered(disk_u);
-            if covered.share <= 0.0 {
-                continue;
-            }
-            let u = covered.u.clamp(disk_u[0], disk_u[1]);
-            let mut part = Crossing { u, g: covered.g, share: covered.share, ..*crossing };
-            part.place.ln_r = -u.ln();
-            let [_, across] = &mut part.footprint;
-            if first_half.is_some() && *across != UNKNOWN_EMISSION_POINT {
-                part.place.azimuth += 0.25 * side * across.azimuth;
-                part.place.delay += 0.25 * side * across.delay;
-                *across =
-                    EmissionPoint { ln_r: 0.5 * across.ln_r, azimuth: 0.5 * across.azimuth, delay: 0.5 * across.delay };
-            }
-            parts.push((part, *weight));
-        }
-        parts
+        let Some(disk_u) = self.disk_u else { return ArrayVec::new() };
+        let parts: ArrayVec<_, 2> = match first_half {
+            Some(first) => [(cell.half(-1.0), first), (cell.half(1.0), 1.0 - first)].into(),
+            None => [(*cell, 1.0)].into_iter().collect(),
+        };
+        let covered = parts.into_iter().map(|(part, weight)| (part.covered(disk_u), weight));
+        let seen = covered.filter(|(covered, _)| covered.share > 0.0);
+        seen.map(|(Covered { share, u, g }, weight)| {
+            (Crossing { u: u.clamp(disk_u[0], disk_u[1]), g, share, ..*crossing }, weight)
+        })
+        .collect()
     }
 
     /// How evenly the samples of the pixel about `at` change from one to the next.

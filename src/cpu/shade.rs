@@ -106,8 +106,11 @@ impl<'a> Shader<'a> {
                 continue;
             }
             let emission = seen_emission(crossing, open);
-            (0..3).for_each(|c| light[c] += emission.light[c]);
-            open *= 1.0 - emission.opacity;
+            if emission.opacity > 0.0 {
+                let structure = self.plane.structure(crossing);
+                (0..3).for_each(|c| light[c] += structure * emission.light[c]);
+                open *= 1.0 - emission.opacity;
+            }
         }
         pass(&mut light, &mut open);
         if shown.is_some_and(|shown| shown.ends) {
@@ -123,7 +126,8 @@ impl<'a> Shader<'a> {
         [light[0], light[1], light[2], 1.0 - open]
     }
 
-    /// The light that a crossing adds to a ray of which the share `open` comes this far, and its opacity.
+    /// The light that a crossing adds to a ray of which the share `open` comes this far, without structure, and its
+    /// opacity.
     pub fn emission(&self, here: &Record, crossing: &Crossing, open: f64) -> Emission {
         let gravity = || nu_static_observer(self.lens, here) / self.nu_zamo_in_plane(crossing.u, here);
         let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);

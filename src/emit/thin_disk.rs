@@ -187,19 +187,21 @@ impl DiskLight {
         Ok(Self { disk, colours, profile: TemperatureProfile::new(disk.matter_spin), log_reference, streaks })
     }
 
-    /// The light that a crossing on the disk adds to a ray of which the share `open` comes this far. `mu`: |cosine| of
-    /// the ray's angle to the disk's normal, as the matter sees it.
+    /// The light that a crossing adds to a ray of which the share `open` comes this far, were the disk smooth. `mu`:
+    /// |cosine| of the ray's angle to the disk's normal, as the matter sees it.
     pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, mu: f64, open: f64) -> Emission {
-        let ThinDisk { disk, turbulence, .. } = &self.disk;
         let profile = self.disk.profile(&self.profile, crossing.u);
-        let rgb = self.light(profile, shift);
-        let structure = match (turbulence, self.streaks) {
+        let opacity = self.opacity_at(crossing, profile);
+        let strength = open * opacity * emission_law(self.disk.disk.emission_law, mu);
+        Emission { light: self.light(profile, shift).map(|v| strength * v), opacity }
+    }
+
+    /// The factor on that light by the disk's structure.
+    pub fn structure(&self, crossing: &Crossing) -> f64 {
+        match (self.disk.turbulence, self.streaks) {
             (Some(turbulence), Some(streaks)) => turbulence.brightness(streaks, crossing.place, crossing.footprint),
             _ => 1.0,
-        };
-        let opacity = self.opacity_at(crossing, profile);
-        let strength = open * opacity * structure * emission_law(disk.emission_law, mu);
-        Emission { light: rgb.map(|v| strength * v), opacity }
+        }
     }
 
     /// The share of the light from behind that a crossing hides.
