@@ -260,7 +260,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         LISTED,
     ),
     ("refine/refine", "refine_sample", "for (var k = 0u; k < LANE_ORDERS; k += 1u)", CONSTANT),
-    ("refine/refine", "seen_emission", "for (var half = 0u; half < halves; half += 1u)", CONSTANT),
+    ("refine/refine", "seen_emission", "for (var i = 0u; i < not_inlined(2u); i += 1u)", CONSTANT),
     ("refine/strips", "level_about", "for (var i = 0u; i < 5u; i += 1u)", CONSTANT),
     ("refine/strips", "strips_of", "for (var i = 0u; i < SEARCH_STEPS + 5u; i += 1u)", CONSTANT),
     ("refine/refine", "refine_sample", "for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u)", CROSSINGS),

@@ -20,8 +20,8 @@ fn disk_covers(u: f32) -> f32 {
     return select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
 }
 
-// The light that a crossing adds to a ray of which the share `open` comes this far, were the disk smooth; w: the share of
-// the light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
+// The light that a crossing adds to a ray of which the share `open` comes this far, were the disk smooth; w: the share
+// of the light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
 fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
     let profile = disk_profile(crossing.u);
     let opacity = disk_opacity(crossing, profile);

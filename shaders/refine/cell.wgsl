@@ -43,21 +43,27 @@ fn half_cell(cell: CellCrossing, side: f32) -> CellCrossing {
     return CellCrossing(cell.u + off * cell.du.y, cell.g * exp(off * cell.dg.y), halved * cell.du, halved * cell.dg);
 }
 
-// Share of a cell that the disk covers, and u and g in the middle of this part.
-fn covered(cell: CellCrossing) -> vec3<f32> {
-    let u = cell.u;
+// Between which differences from u in its middle a cell lies on the disk; the first is above the second where it does
+// not.
+fn levels_on_disk(cell: CellCrossing) -> vec2<f32> {
+    let half = 0.5 * max(abs(cell.du.x) + abs(cell.du.y), LEAST_SLOPE);
+    return vec2<f32>(max(frame.disk_u.x - cell.u, -half), min(frame.disk_u.y - cell.u, half));
+}
+
+// The part of a cell in which u differs from that in the middle by `levels`, which lie among those of levels_on_disk:
+// its share of the cell, the mean of u in it, and g where u is that. The share is 0 or less where there is none.
+fn covered(cell: CellCrossing, levels: vec2<f32>) -> vec3<f32> {
     let du = cell.du;
-    let share = clamp(share_below(frame.disk_u.y - u, du) - share_below(frame.disk_u.x - u, du), 0.0, 1.0);
-    let half = 0.5 * (abs(du.x) + abs(du.y));
-    let low = max(u - half, frame.disk_u.x);
-    let high = min(u + half, frame.disk_u.y);
-    // The less of the cell is left out, the less does that move the middle of the rest.
-    let part = clamp(2.0 * (1.0 - share), 0.0, 1.0);
-    let off = select(0.0, part * (0.5 * (low + high) - u), low < high);
+    let below = vec2<f32>(share_below(levels.x, du), share_below(levels.y, du));
+    let share = below.y - below.x;
+    let sum = sum_below(levels.y, du) - sum_below(levels.x, du);
+    // The mean of a quantity between two values, from the shares below each (integrated by parts).
+    let mean = (levels.y * below.y - levels.x * below.x - sum) / max(share, 1e-20);
+    let off = min(max(mean, levels.x), levels.y);
     // The nearest place of the cell where u is so much off.
     let steepness = max(length(du), LEAST_SLOPE);
     let ln_g = off / steepness * dot(du / steepness, cell.dg);
-    return vec3<f32>(share, u + off, cell.g * exp(ln_g));
+    return vec3<f32>(min(share, 1.0), cell.u + off, cell.g * exp(ln_g));
 }
 
 // Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two
@@ -69,4 +75,16 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     let cut = corner * corner / (2.0 * most * max(least, LEAST_SLOPE));
     let by_corner = select(cut, 1.0 - cut, level > 0.0);
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
+}
+
+// The integral of share_below over levels up to this one.
+fn sum_below(level: f32, slope: vec2<f32>) -> f32 {
+    let most = max(max(abs(slope.x), abs(slope.y)), LEAST_SLOPE);
+    let least = min(abs(slope.x), abs(slope.y));
+    let low = -abs(level);
+    let inner = 0.5 * (most - least);
+    let corner = max(0.5 * (most + least) + low, 0.0);
+    let by_corner = corner * corner / (2.0 * most * max(least, LEAST_SLOPE)) * (corner / 3.0);
+    let between = least * (least / (6.0 * most)) + 0.5 * (low + inner) * (1.0 + (low - inner) / most);
+    return select(by_corner, between, low >= -inner) + max(level, 0.0);
 }

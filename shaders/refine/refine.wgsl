@@ -295,7 +295,8 @@ fn seen_crossing() -> Crossing {
     return crossing;
 }
 
-// The light of a crossing over its cell, as crossing_emission: the mean of its halves.
+// The light of a crossing over its cell, as crossing_emission: that of two parts, the halves of a strip's cell, or two
+// ranges of u.
 fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
     let order = crossing.order;
     let others = vec4<f32>(crossing_in(beside.x, order), crossing_in(beside.y, order), crossing_in(beside.z, order),
@@ -303,17 +304,20 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
     let others_g = vec4<f32>(g_in(beside.x, order), g_in(beside.y, order), g_in(beside.z, order),
         g_in(beside.w, order));
     let cell = cell_crossing(crossing.u, g_in(lane, order), others, others_g);
-    let halves = not_inlined(select(2u, 1u, in_quarters()));
     var emission = vec4<f32>(0.0);
-    for (var half = 0u; half < halves; half += 1u) {
-        let side = f32(half) * 2.0 - 1.0;
-        var part = half_cell(cell, side);
-        var weight = select(first_half, 1.0 - first_half, half == 1u);
-        if in_quarters() {
-            part = cell;
-            weight = 1.0;
+    for (var i = 0u; i < not_inlined(2u); i += 1u) {
+        var part = cell;
+        var weight = 1.0;
+        if !in_quarters() {
+            part = half_cell(cell, f32(i) * 2.0 - 1.0);
+            weight = select(first_half, 1.0 - first_half, i == 1u);
         }
-        let seen = covered(part);
+        var levels = levels_on_disk(part);
+        if in_quarters() {
+            let middle = 0.5 * (levels.x + levels.y);
+            levels = select(vec2<f32>(levels.x, middle), vec2<f32>(middle, levels.y), i == 1u);
+        }
+        let seen = covered(part, levels);
         if seen.x > 0.0 {
             var covering = crossing;
             covering.share = seen.x;

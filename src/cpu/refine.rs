@@ -140,8 +140,9 @@ impl<'a> Refiner<'a> {
         sum.map(|v: f64| v / total.max(f64::MIN_POSITIVE))
     }
 
-    /// The parts of its cell in which a crossing is seen, the whole or two halves, as crossings of their own, each with
-    /// its share of the cell. Those that the disk does not cover are left out.
+    /// A crossing in the two parts of its cell in which it is seen, as crossings of their own: the halves of a strip's
+    /// cell, of which the first is `first_half` of it, or two ranges of u; with a weight of each. Those that the disk
+    /// does not cover are left out.
     fn seen_parts(
         &self,
         cell: &CellCrossing,
@@ -149,16 +150,22 @@ impl<'a> Refiner<'a> {
         first_half: Option<f64>,
     ) -> ArrayVec<(Crossing, f64), 2> {
         let Some(disk_u) = self.disk_u else { return ArrayVec::new() };
-        let parts: ArrayVec<_, 2> = match first_half {
-            Some(first) => [(cell.half(-1.0), first), (cell.half(1.0), 1.0 - first)].into(),
-            None => [(*cell, 1.0)].into_iter().collect(),
+        let parts = match first_half {
+            Some(first) => [(-1.0, first), (1.0, 1.0 - first)].map(|(side, weight)| {
+                let half = cell.half(side);
+                (half, half.levels_on(disk_u), weight)
+            }),
+            None => {
+                let [low, high] = cell.levels_on(disk_u);
+                let middle = 0.5 * (low + high);
+                [[low, middle], [middle, high]].map(|levels| (*cell, levels, 1.0))
+            }
         };
-        let covered = parts.into_iter().map(|(part, weight)| (part.covered(disk_u), weight));
-        let seen = covered.filter(|(covered, _)| covered.share > 0.0);
-        seen.map(|(Covered { share, u, g }, weight)| {
-            (Crossing { u: u.clamp(disk_u[0], disk_u[1]), g, share, ..*crossing }, weight)
-        })
-        .collect()
+        let seen = parts.into_iter().filter_map(|(part, levels, weight)| {
+            let Covered { share, u, g } = part.covered(levels)?;
+            Some((Crossing { u: u.max(disk_u[0]).min(disk_u[1]), g, share, ..*crossing }, weight))
+        });
+        seen.collect()
     }
 
     /// How evenly the samples of the pixel about `at` change from one to the next.

@@ -158,8 +158,8 @@ impl PlaneLight {
         Ok(Self { disk: emitters.disk.map(DiskLight::new).transpose()? })
     }
 
-    /// The light that a crossing adds, without structure, and its opacity. `mu` is |cosine| of the ray's angle to the normal of the plane,
-    /// as the matter sees it; `open` is the share of light from here that reaches the camera.
+    /// The light that a crossing adds, without structure, and its opacity. `mu` is |cosine| of the ray's angle to the
+    /// normal of the plane, as the matter sees it; `open` is the share of light from here that reaches the camera.
     pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, mu: f64, open: f64) -> Emission {
         match &self.disk {
             Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, mu, open),

@@ -2,10 +2,13 @@
 //! How a crossing of the disk's plane changes over the cell of a sample, and how much of the cell the disk covers.
 //! Shared by both tracers (shaders/refine/cell.wgsl mirrors it); knows no rays and no light.
 //!
-//! Over a cell u and ln g are taken to change evenly, as the samples beside it say. Where the disk covers only part of
-//! the cell, its light is that in the middle of this part. Across the curve images of high order change much from one
-//! strip to the next: three or four strips may hold all of such an image, and the light of one be ten times that of the
-//! next. Hence the cells of strips are seen in two halves (`CellCrossing::half`).
+//! Over a cell u and ln g are taken to change evenly, as the samples beside it say. A cell is seen in two parts, each
+//! with the light of the mean u of what the disk covers of it:
+//!
+//! - Cells of strips in two halves, one nearer to the critical curve (`CellCrossing::half`): images of high order
+//!   change much from one strip to the next. Three or four strips may hold all of such an image, and the light of one be
+//!   ten times that of the next.
+//! - Quarters of a pixel in two ranges of u: the disk's light vanishes at its inner edge, and grows steeply from there.
 
 /// u and g of the crossing of one order in a sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,12 +36,12 @@ pub struct CellCrossing {
     pub dg: [f64; 2],
 }
 
-/// The part of a cell that the disk covers.
+/// A part of a cell that lies on the disk.
 #[derive(Clone, Copy, Debug)]
 pub struct Covered {
-    /// The share of the cell.
+    /// The share of the cell, above 0.
     pub share: f64,
-    /// In the middle of the part that is covered.
+    /// The mean of u in the part, and g where u is that.
     pub u: f64,
     pub g: f64,
 }
@@ -69,20 +72,30 @@ impl CellCrossing {
         Self { u: self.u + 0.25 * side * du, g, du: [du_along, 0.5 * du], dg: [dg_along, 0.5 * dg] }
     }
 
-    /// The part that lies between `outer` and `inner`, 1/r of the disk's edges: light that vanishes at the disk's edge
-    /// does not all over the cell.
-    pub fn covered(&self, [outer, inner]: [f64; 2]) -> Covered {
-        let (u, du) = (self.u, self.du);
-        let share = (share_below(inner - u, du) - share_below(outer - u, du)).clamp(0.0, 1.0);
-        let half = 0.5 * (du[0].abs() + du[1].abs());
-        let [low, high] = [(u - half).max(outer), (u + half).min(inner)];
-        // The less of the cell is left out, the less does that move the middle of the rest.
-        let part = (2.0 * (1.0 - share)).min(1.0);
-        let off = if low < high { part * (0.5 * (low + high) - u) } else { 0.0 };
+    /// Between which differences from `u` the cell lies on the disk, whose edges are at `disk_u`; the first is above
+    /// the second where it does not.
+    pub fn levels_on(&self, [outer, inner]: [f64; 2]) -> [f64; 2] {
+        let half = 0.5 * (self.du[0].abs() + self.du[1].abs()).max(LEAST_SLOPE);
+        [(outer - self.u).max(-half), (inner - self.u).min(half)]
+    }
+
+    /// The part in which u differs from that in the middle by `levels`, which lie among those of `levels_on`. `None`:
+    /// there is none.
+    pub fn covered(&self, levels: [f64; 2]) -> Option<Covered> {
+        let du = self.du;
+        let [below_low, below_high] = levels.map(|level| share_below(level, du));
+        let share = below_high - below_low;
+        if share.is_nan() || share <= 0.0 {
+            return None;
+        }
+        let [low, high] = levels;
+        let sum = sum_below(high, du) - sum_below(low, du);
+        // The mean of a quantity between two values, from the shares below each (integrated by parts).
+        let off = ((high * below_high - low * below_low - sum) / share).max(low).min(high);
         // The nearest place of the cell where u is so much off.
         let steepness = du[0].hypot(du[1]).max(LEAST_SLOPE);
         let ln_g = off / steepness * ((du[0] * self.dg[0] + du[1] * self.dg[1]) / steepness);
-        Covered { share, u: u + off, g: self.g * ln_g.exp() }
+        Some(Covered { share: share.min(1.0), u: self.u + off, g: self.g * ln_g.exp() })
     }
 }
 
@@ -113,6 +126,21 @@ pub(crate) fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     if level > 0.0 { 1.0 - cut } else { cut }
 }
 
+/// The integral of `share_below` over levels up to this one.
+fn sum_below(level: f64, slope: [f64; 2]) -> f64 {
+    let [x, y] = slope.map(f64::abs);
+    let (most, least) = (x.max(y).max(LEAST_SLOPE), x.min(y));
+    let low = -level.abs();
+    let inner = 0.5 * (most - least);
+    let sum = if low >= -inner {
+        least * (least / (6.0 * most)) + 0.5 * (low + inner) * (1.0 + (low - inner) / most)
+    } else {
+        let corner = (0.5 * (most + least) + low).max(0.0);
+        corner * corner / (2.0 * most * least.max(LEAST_SLOPE)) * (corner / 3.0)
+    };
+    sum + level.max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,21 +169,45 @@ mod tests {
         CellCrossing { u: 0.1, g: 0.8, du, dg }
     }
 
-    /// Halves cover together what the whole does, and light that changes evenly with u is the same in both.
+    /// Halves, and ranges of u, cover together what the whole does, and their mean u is that of the whole.
     #[test]
-    fn halves_make_the_whole() {
+    fn parts_make_the_whole() {
         for du in [[0.0, 0.3], [0.04, -0.2], [-0.1, 0.01], [0.0, 0.0], [0.2, 0.2]] {
             let whole = crossing(du, [0.1, -0.4]);
             for disk_u in [[0.05, 0.15], [0.0, 1.0], [0.11, 0.2], [0.3, 0.4]] {
-                let halves = [-1.0, 1.0].map(|side| whole.half(side).covered(disk_u));
-                let mean = 0.5 * (halves[0].share + halves[1].share);
-                assert!((mean - whole.covered(disk_u).share).abs() < 1e-12, "{du:?} {disk_u:?}: {mean}");
+                let levels = whole.levels_on(disk_u);
+                let middle = 0.5 * (levels[0] + levels[1]);
+                let halves = [-1.0, 1.0].map(|side| whole.half(side)).map(|half| half.covered(half.levels_on(disk_u)));
+                let ranges = [[levels[0], middle], [middle, levels[1]]].map(|levels| whole.covered(levels));
+                let all = whole.covered(levels).map_or([0.0; 2], |all| [all.share, all.share * all.u]);
+                for (parts, weight) in [(halves, 0.5), (ranges, 1.0)] {
+                    let sum = |of: &dyn Fn(&Covered) -> f64| weight * parts.iter().flatten().map(of).sum::<f64>();
+                    let [share, u] = [sum(&|part| part.share), sum(&|part| part.share * part.u)];
+                    assert!((share - all[0]).abs() < 1e-12, "{du:?} {disk_u:?}: {share} of {}", all[0]);
+                    assert!((u - all[1]).abs() < 1e-12, "{du:?} {disk_u:?}: {u} of {}", all[1]);
+                }
             }
-            let all = [-1.0, 1.0].map(|side| whole.half(side).covered([-1.0, 1.0]));
-            let u = |half: &Covered| half.u;
-            assert!((0.5 * (u(&all[0]) + u(&all[1])) - 0.1).abs() < 1e-12, "{du:?}");
-            assert!((u(&all[1]) - u(&all[0]) - 0.5 * du[1]).abs() < 1e-12, "{du:?}");
-            assert!((all[0].g * all[1].g - 0.64).abs() < 1e-12 && all[0].g > all[1].g, "{all:?}");
+            let [low, high] = [-1.0, 1.0].map(|side| whole.half(side).covered([-1.0, 1.0]).unwrap());
+            assert!((high.u - low.u - 0.5 * du[1]).abs() < 1e-12, "{du:?}");
+            assert!((low.g * high.g - 0.64).abs() < 1e-12 && low.g > high.g, "{low:?} {high:?}");
+        }
+    }
+
+    /// By counting points.
+    #[test]
+    fn the_mean_u_of_a_part_is_that_of_its_points() {
+        const N: u32 = 400;
+        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(N) - 0.5;
+        for du in [[0.03, 0.02], [0.001, -0.08], [-0.05, -0.05], [0.0, 0.06]] {
+            for levels in [[-0.02, 0.01], [0.005, 0.02], [-0.01, 1.0], [-1.0, -0.015]] {
+                let u = |(i, j): (u32, u32)| du[0] * place(i) + du[1] * place(j);
+                let points = (0..N).flat_map(|i| (0..N).map(move |j| (i, j))).map(u);
+                let within: Vec<f64> = points.filter(|u| *u >= levels[0] && *u <= levels[1]).collect();
+                let mean = within.iter().sum::<f64>() / within.len() as f64;
+                let covered = crossing(du, [0.0; 2]).covered(levels).unwrap();
+                let error = covered.u - 0.1 - mean;
+                assert!(error.abs() < 2e-4, "{du:?} {levels:?}: {error} of {mean}");
+            }
         }
     }
 
@@ -170,10 +222,10 @@ mod tests {
                 here,
                 [[at(0.1 - 0.3 * step), at(0.1 + 0.3 * step)], [at(0.1 - step), at(0.1 + step)]],
             );
-            let covered = cell.covered([0.1005, 0.2]);
+            let covered = cell.covered(cell.levels_on([0.1005, 0.2])).unwrap();
             assert!(covered.u > 0.1005 && covered.share < 0.5, "{covered:?}");
             let expected = covered.u.powf(power);
-            assert!((covered.g / expected - 1.0).abs() < 4e-4 && covered.g > 1.003 * here.g, "{covered:?} {expected}");
+            assert!((covered.g / expected - 1.0).abs() < 4e-4 && covered.g > 1.01 * here.g, "{covered:?} {expected}");
         }
     }
 

@@ -181,7 +181,7 @@ pub fn group() -> Group {
         ),
         twin(
             cell,
-            "covered cell_crossing change_of_u half_cell",
+            "covered cell_crossing change_of_u half_cell levels_on_disk sum_below",
             "enter_scene(); frame.disk_u = in2(1u);
              let whole = cell_crossing(in1(3u), in1(4u), in4(5u), in4(9u));
              out1(whole.g);
@@ -189,17 +189,22 @@ pub fn group() -> Group {
              if word(13u) > 0u {
                  part = half_cell(whole, f32(word(13u)) * 2.0 - 3.0);
              }
-             out3(covered(part));",
+             let levels = levels_on_disk(part);
+             out2(levels);
+             let seen = covered(part, levels);
+             out1(max(seen.x, 0.0));
+             out2(select(vec2<f32>(0.0), seen.x * seen.yz, vec2<bool>(seen.x > 0.0)));",
             push_cell,
             |i, o| {
                 let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4)));
                 let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4)), [pair(5), pair(7)]);
                 let part = if i.word(13) > 0 { whole.half(f64::from(i.word(13)) * 2.0 - 3.0) } else { whole };
-                let covered = part.covered([i.x(1), i.x(2)]);
+                let levels = part.levels_on([i.x(1), i.x(2)]);
                 o.near(whole.g, 0.0);
-                o.near(covered.share, 1.0);
-                o.near(covered.u, 1.0);
-                o.near(covered.g, 1.0);
+                o.all(levels, 1.0);
+                let seen = part.covered(levels);
+                o.near(seen.map_or(0.0, |seen| seen.share), 1.0);
+                o.all(seen.map_or([0.0; 2], |seen| [seen.share * seen.u, seen.share * seen.g]), 1.0);
             },
             2e-4,
         ),
