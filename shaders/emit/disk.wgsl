@@ -28,7 +28,7 @@ fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec
     return vec4<f32>(open * opacity * emission_law(mu) * disk_light(profile, shift), opacity);
 }
 
-// The factor on that light by the disk's structure.
+// The factor by which the disk's structure changes the light of a crossing.
 fn disk_structure(crossing: Crossing) -> f32 {
     if FOOTPRINTS && TURBULENT {
         return turbulent_brightness(crossing.place, crossing.dx, crossing.dy);

@@ -12,7 +12,7 @@ fn emitted_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> 
     return disk_at_crossing(crossing, shift, mu, open);
 }
 
-// The factor on that light by the emitters' structure.
+// The factor by which the emitters' structure changes the light of a crossing.
 fn structure_at_crossing(crossing: Crossing) -> f32 {
     return disk_structure(crossing);
 }

@@ -7,27 +7,41 @@
 
 // A crossing over a cell, 1 x 1 about its middle.
 struct CellCrossing {
-    // In the middle.
+    // In the middle; g is 0 where it is not known.
     u: f32,
     g: f32,
-    // Changes of u and of ln g to the next cell along the curve and across it.
+    // Changes of u and of ln g to the next cell along the strip and across the curve, or to the next quarter in the row
+    // and the column.
     du: vec2<f32>,
     dg: vec2<f32>,
 }
 
+// g of a crossing at u; 0 where it is not known, inside the disk's inner edge.
+fn known_g(u: f32, g: f32) -> f32 {
+    return select(0.0, g, u <= frame.disk_u.y && g > 1e-20 && g < 1e30);
+}
+
 // The crossing over the cell of a sample where it has `u` and `g`; `others_u` and `others_g` are those of the samples
-// before and after it along the curve, and before and after it across. u is 0 where there is no crossing, g is 0 where
-// it is not known.
+// before and after it along the strip (or the row), and before and after it across the curve (or in the column). u is 0
+// where there is no crossing, g is known_g.
 fn cell_crossing(u: f32, g: f32, others_u: vec4<f32>, others_g: vec4<f32>) -> CellCrossing {
     let along = select(others_g.y, others_g.x, others_g.x > 0.0);
     let across = select(others_g.w, others_g.z, others_g.z > 0.0);
-    let nearest = select(along, across, across > 0.0);
-    // Beyond the disk's inner edge g may be known in the next cell only.
-    let known = select(select(1.0, nearest, nearest > 0.0), g, g > 0.0);
-    let ln = log(select(vec4<f32>(known), others_g, others_g > vec4<f32>(0.0)) / known);
-    let pairs = vec2<bool>(all(others_g.xy > vec2<f32>(0.0)), all(others_g.zw > vec2<f32>(0.0)));
-    let dg = select(vec2<f32>(1.0), vec2<f32>(0.5), pairs) * (ln.yw - ln.xz);
-    return CellCrossing(u, known, vec2<f32>(change_of_u(u, others_u.xy), change_of_u(u, others_u.zw)), dg);
+    // Inside the disk's inner edge g may be known in the next cell only.
+    let here = select(select(along, across, across > 0.0), g, g > 0.0);
+    let du = vec2<f32>(change_of_u(u, others_u.xy), change_of_u(u, others_u.zw));
+    let dg = vec2<f32>(even_change_of_g(here, others_g.xy), even_change_of_g(here, others_g.zw));
+    return CellCrossing(u, here, du, dg);
+}
+
+// The change of ln g from one cell to the next: the smaller of those from the cell before and to the cell after.
+fn even_change_of_g(here: f32, others: vec2<f32>) -> f32 {
+    let there = others > vec2<f32>(0.0);
+    let sure = max(here, 1e-20);
+    let ln = log(select(vec2<f32>(sure), others, there) / sure);
+    let change = vec2<f32>(-ln.x, ln.y);
+    let smaller = max(min(change.x, change.y), 0.0) + min(max(change.x, change.y), 0.0);
+    return select(change.x + change.y, smaller, all(there));
 }
 
 fn change_of_u(u: f32, others: vec2<f32>) -> f32 {

@@ -119,8 +119,7 @@ fn refine_sample(entry: u32, end: u32) {
         }
         let at = lane * LANE_ORDERS + crossing.order;
         lane_u[at] = crossing.u;
-        // Inside the horizon it may be no number at all.
-        lane_g[at] = select(0.0, crossing.g, crossing.g > 0.0 && crossing.g < 1e30);
+        lane_g[at] = known_g(crossing.u, crossing.g);
         if FOOTPRINTS {
             lane_place[at] = vec2<f32>(crossing.place.azimuth, crossing.place.delay);
         }
@@ -303,7 +302,7 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
         crossing_in(beside.w, order));
     let others_g = vec4<f32>(g_in(beside.x, order), g_in(beside.y, order), g_in(beside.z, order),
         g_in(beside.w, order));
-    let cell = cell_crossing(crossing.u, g_in(lane, order), others, others_g);
+    let cell = cell_crossing(crossing.u, known_g(crossing.u, crossing.g), others, others_g);
     var emission = vec4<f32>(0.0);
     for (var i = 0u; i < not_inlined(2u); i += 1u) {
         var part = cell;

@@ -93,8 +93,8 @@ fn is_occluded(crossing: Crossing) -> bool {
 var<private> seen_through: f32;
 var<private> seen_turn: f32;
 
-// Light and alpha of a record. seen_crossing gives next_crossing, with its share unless seen_emission finds that;
-// seen_emission gives its crossing_emission, and seen_sky the record with its sky.
+// Light and alpha of a record. seen_crossing gives next_crossing, seen_emission the crossing_emission of what the disk
+// covers there, and seen_sky the record with its sky.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;

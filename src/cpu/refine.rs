@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The second look at a pixel that edges run through: more rays, each for a cell of its own, and their mean light.
-//! Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
+//! Mirrored by shaders/refine/refine.wgsl and strips.wgsl; `scene::refine` has the rules. Knows no film.
 
 use super::record::{derivative_of_direction, derivative_of_place};
 use super::record_source::RecordSource;
@@ -127,7 +127,7 @@ impl<'a> Refiner<'a> {
             let Some(record) = samples.completed(index) else { continue };
             let light = shader.shade_record_with(&record, x, y, |crossing, open| {
                 let mut emission = Emission { light: [0.0; 3], opacity: 0.0 };
-                for (part, weight) in self.seen_parts(&samples.over_cell(index, crossing), crossing, first_half) {
+                for (part, weight) in self.seen_parts(samples, index, crossing, first_half) {
                     let seen = shader.emission(&record, &part, open);
                     (0..3).for_each(|c| emission.light[c] += weight * seen.light[c]);
                     emission.opacity += weight * seen.opacity;
@@ -140,16 +140,18 @@ impl<'a> Refiner<'a> {
         sum.map(|v: f64| v / total.max(f64::MIN_POSITIVE))
     }
 
-    /// A crossing in the two parts of its cell in which it is seen, as crossings of their own: the halves of a strip's
-    /// cell, of which the first is `first_half` of it, or two ranges of u; with a weight of each. Those that the disk
-    /// does not cover are left out.
+    /// A crossing of sample `index` in the two parts of its cell in which it is seen, as crossings of their own: the
+    /// halves of a strip's cell, of which the first is `first_half` of it, or two ranges of u; with a weight of each.
+    /// Those that the disk does not cover are left out.
     fn seen_parts(
         &self,
-        cell: &CellCrossing,
+        samples: &Samples<'_>,
+        index: u32,
         crossing: &Crossing,
         first_half: Option<f64>,
     ) -> ArrayVec<(Crossing, f64), 2> {
         let Some(disk_u) = self.disk_u else { return ArrayVec::new() };
+        let cell = samples.over_cell(index, crossing, disk_u[1]);
         let parts = match first_half {
             Some(first) => [(-1.0, first), (1.0, 1.0 - first)].map(|(side, weight)| {
                 let half = cell.half(side);
@@ -158,7 +160,7 @@ impl<'a> Refiner<'a> {
             None => {
                 let [low, high] = cell.levels_on(disk_u);
                 let middle = 0.5 * (low + high);
-                [[low, middle], [middle, high]].map(|levels| (*cell, levels, 1.0))
+                [[low, middle], [middle, high]].map(|levels| (cell, levels, 1.0))
             }
         };
         let seen = parts.into_iter().filter_map(|(part, levels, weight)| {
@@ -211,13 +213,13 @@ impl<'a> Samples<'a> {
         Some(record)
     }
 
-    /// A crossing of a sample over its cell.
-    fn over_cell(&self, index: u32, crossing: &Crossing) -> CellCrossing {
+    /// A crossing of a sample over its cell. `inner`: 1/r of the disk's inner edge.
+    fn over_cell(&self, index: u32, crossing: &Crossing, inner: f64) -> CellCrossing {
         let same = |there: Option<&Record>| {
             let same = there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order));
-            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g))
+            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g, inner))
         };
-        CellCrossing::new(Crossed::new(crossing.u, crossing.g), self.beside(index).map(|pair| pair.map(same)))
+        CellCrossing::new(Crossed::new(crossing.u, crossing.g, inner), self.beside(index).map(|pair| pair.map(same)))
     }
 }
 

@@ -167,7 +167,7 @@ impl PlaneLight {
         }
     }
 
-    /// The factor on that light by the emitters' structure.
+    /// The factor by which the emitters' structure changes the light of a crossing.
     pub fn structure(&self, crossing: &Crossing) -> f64 {
         self.disk.as_ref().map_or(1.0, |disk| disk.structure(crossing))
     }

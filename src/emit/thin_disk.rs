@@ -196,7 +196,7 @@ impl DiskLight {
         Emission { light: self.light(profile, shift).map(|v| strength * v), opacity }
     }
 
-    /// The factor on that light by the disk's structure.
+    /// The factor by which the disk's structure changes the light of a crossing.
     pub fn structure(&self, crossing: &Crossing) -> f64 {
         match (self.disk.turbulence, self.streaks) {
             (Some(turbulence), Some(streaks)) => turbulence.brightness(streaks, crossing.place, crossing.footprint),

@@ -6,8 +6,8 @@
 //! with the light of the mean u of what the disk covers of it:
 //!
 //! - Cells of strips in two halves, one nearer to the critical curve (`CellCrossing::half`): images of high order
-//!   change much from one strip to the next. Three or four strips may hold all of such an image, and the light of one be
-//!   ten times that of the next.
+//!   change much from one strip to the next. Three or four strips may hold all of such an image, and the light of one
+//!   be ten times that of the next.
 //! - Quarters of a pixel in two ranges of u: the disk's light vanishes at its inner edge, and grows steeply from there.
 
 /// u and g of the crossing of one order in a sample.
@@ -15,23 +15,25 @@
 pub struct Crossed {
     /// 0 where there is no such crossing.
     pub u: f64,
-    /// 0 where it is not known: where matter can have no circular orbit.
+    /// 0 where it is not known: inside the disk's inner edge, where no matter is.
     pub g: f64,
 }
 
 impl Crossed {
-    pub fn new(u: f64, g: f64) -> Self {
-        Self { u, g: if g > 0.0 && g.is_finite() { g } else { 0.0 } }
+    /// `inner`: 1/r of the disk's inner edge.
+    pub fn new(u: f64, g: f64, inner: f64) -> Self {
+        Self { u, g: if u <= inner && g > 0.0 && g.is_finite() { g } else { 0.0 } }
     }
 }
 
 /// A crossing over a cell, 1 x 1 about its middle.
 #[derive(Clone, Copy, Debug)]
 pub struct CellCrossing {
-    /// In the middle.
+    /// In the middle; g is 0 where it is not known.
     pub u: f64,
     pub g: f64,
-    /// Changes of u and of ln g to the next cell along the curve and across it.
+    /// Changes of u and of ln g to the next cell along the strip and across the curve, or to the next quarter in the
+    /// row and the column.
     pub du: [f64; 2],
     pub dg: [f64; 2],
 }
@@ -47,21 +49,18 @@ pub struct Covered {
 }
 
 impl CellCrossing {
-    /// `beside`: the crossings of the same order before and after `here` along the curve and across it.
+    /// `beside`: the crossings of the same order before and after `here` along the strip (or the row) and across the
+    /// curve (or in the column).
     pub fn new(here: Crossed, beside: [[Crossed; 2]; 2]) -> Self {
-        // Beyond the disk's inner edge g may be known in the next cell only.
+        // Inside the disk's inner edge g may be known in the next cell only.
         let known = |crossed: Crossed| if crossed.g > 0.0 { Some(crossed.g) } else { None };
         let [along, across] = beside;
-        let g = known(here).or_else(|| across.into_iter().chain(along).find_map(known)).unwrap_or(1.0);
+        let g = known(here).or_else(|| across.into_iter().chain(along).find_map(known)).unwrap_or(0.0);
         Self {
             u: here.u,
             g,
             du: beside.map(|pair| change(here.u, pair.map(|there| there.u))),
-            dg: beside.map(|pair| {
-                let ln = pair.map(|there| if there.g > 0.0 { (there.g / g).ln() } else { 0.0 });
-                let share = if pair.iter().all(|there| there.g > 0.0) { 0.5 } else { 1.0 };
-                share * (ln[1] - ln[0])
-            }),
+            dg: beside.map(|pair| even_change_of_g(g, pair.map(|there| there.g))),
         }
     }
 
@@ -108,6 +107,17 @@ fn change(here: f64, pair: [f64; 2]) -> f64 {
         [false, true] => pair[1] - here,
         [false, false] => 0.0,
     }
+}
+
+/// The change of ln g from one cell to the next: the smaller of those from the cell before and to the cell after (the
+/// minmod limiter; Roe 1986, Annu. Rev. Fluid Mech. 18, 337), 0 where one rises and the other falls, and one-sided
+/// where g is known in one of these cells only. Towards the horizon g of plunging matter falls to 0: a central
+/// difference would let it grow as much on the other side.
+fn even_change_of_g(here: f64, pair: [f64; 2]) -> f64 {
+    let [before, after] = pair.map(|there| there > 0.0);
+    let from = if before { (here / pair[0]).ln() } else { 0.0 };
+    let to = if after { (pair[1] / here).ln() } else { 0.0 };
+    if before && after { from.min(to).max(0.0) + from.max(to).min(0.0) } else { from + to }
 }
 
 /// The least slope that counts: its square is a normal number in f32, which GPUs do not take for 0.
@@ -215,7 +225,7 @@ mod tests {
     #[test]
     fn g_goes_with_u() {
         let power = 1.5;
-        let at = |u: f64| Crossed::new(u, u.powf(power));
+        let at = |u: f64| Crossed::new(u, u.powf(power), 0.2);
         for step in [-0.004, 0.003] {
             let here = at(0.1);
             let cell = CellCrossing::new(
@@ -229,24 +239,40 @@ mod tests {
         }
     }
 
+    /// Halves are not brighter than what lies beside them, however steeply g falls on the other side.
+    #[test]
+    fn g_does_not_overshoot() {
+        let none = Crossed::default();
+        let at = |u: f64, g: f64| Crossed::new(u, g, 0.5);
+        for last in [0.5, 0.1, 1e-3, 1e-9] {
+            let cell = CellCrossing::new(at(0.3, 0.6), [[none; 2], [at(0.2, 0.7), at(0.4, last)]]);
+            let g = [-1.0, 1.0].map(|side| cell.half(side).g);
+            assert!(g[0] <= 0.7 && g[0] > 0.6 && g[1] < 0.6 && g[1] > 0.5, "{last}: {g:?}");
+        }
+        assert_eq!(CellCrossing::new(at(0.3, 0.6), [[none; 2], [at(0.2, 0.7), at(0.4, 0.8)]]).dg[1], 0.0);
+    }
+
     /// Crossings that samples beside lack, and g that is known on one side only or nowhere.
     #[test]
     fn what_is_missing_is_left_out() {
         let none = Crossed::default();
-        let [low, high] = [0.08, 0.13].map(|u| Crossed::new(u, 2.0 * u));
-        let here = Crossed::new(0.1, 0.2);
+        let [low, high] = [0.08, 0.13].map(|u| Crossed::new(u, 2.0 * u, 0.15));
+        let here = Crossed::new(0.1, 0.2, 0.15);
         let across = |pair| CellCrossing::new(here, [[none; 2], pair]);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
         near(across([low, high]).du[1], 0.025);
         near(across([low, none]).du[1], 0.02);
         near(across([none, high]).du[1], 0.03);
         near(across([none, high]).dg[1], (0.26_f64 / 0.2).ln());
-        near(across([none, none]).du[1] + across([none, none]).dg[1], 0.0);
+        near(across([none, none]).du[1], 0.0);
+        near(across([none, none]).dg[1], 0.0);
         for unknown in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
-            let here = Crossed::new(0.1, unknown);
+            let here = Crossed::new(0.1, unknown, 0.15);
             near(CellCrossing::new(here, [[none; 2], [none, high]]).g, high.g);
             near(CellCrossing::new(here, [[low, none], [none; 2]]).g, low.g);
-            near(CellCrossing::new(here, [[none; 2]; 2]).g, 1.0);
+            near(CellCrossing::new(here, [[none; 2]; 2]).g, 0.0);
+            near(CellCrossing::new(here, [[none; 2]; 2]).dg[1], 0.0);
         }
+        near(Crossed::new(0.16, 0.2, 0.15).g, 0.0);
     }
 }

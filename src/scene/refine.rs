@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk
-//! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays
-//! and no light.
+//! Pixels that edges run through: which these are, and where their samples lie. Shared by both tracers
+//! (shaders/records/record.wgsl and the files of shaders/refine mirror it); knows no rays and no light.
 //!
 //! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, misses rings
 //! thinner than the pixel, and has no footprint that holds all over a pixel beside the shadow, where the sky and every
@@ -330,7 +329,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn share_on(u: f64, beside: [[f64; 2]; 2], disk_u: [f64; 2]) -> f64 {
-        let crossed = |u| Crossed::new(u, 1.0);
+        let crossed = |u| Crossed::new(u, 1.0, disk_u[1]);
         let cell = CellCrossing::new(crossed(u), beside.map(|pair| pair.map(crossed)));
         cell.covered(cell.levels_on(disk_u)).map_or(0.0, |covered| covered.share)
     }

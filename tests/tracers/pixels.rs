@@ -7,7 +7,7 @@ use crate::frames::{Lent, cpu, floats, gpu, picture};
 use crate::random::{Random, count_from, runs_all};
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, LensTables, Method, Motion, Region, Scene, Sky, View};
+use bhr::scene::{Camera, Disk, LensTables, Method, Motion, Region, Scene, Sky, View};
 use glam::{DMat3, DQuat, DVec3};
 
 /// How much finer the frames are that pixels are held against: 64 of their pixels for one.
@@ -27,13 +27,15 @@ struct Sight {
     disk: Option<f64>,
     /// How softly its edges fade.
     softness: f64,
+    /// Makes it another disk than `Scene::plain` has.
+    change: fn(&mut Disk),
 }
 
 const fn sight(spin: f64, r: f64, elevation: f64, fov: f64, sky: bool, disk: Option<f64>) -> Sight {
-    Sight { spin, r, elevation, fov, size: [320, 180], sky, disk, softness: 0.0 }
+    Sight { spin, r, elevation, fov, size: [320, 180], sky, disk, softness: 0.0, change: |_| {} }
 }
 
-const SIGHTS: [Sight; 14] = [
+const SIGHTS: [Sight; 18] = [
     sight(0.0, 10.0, 20.0, 60.0, true, None),
     sight(0.0, 30.0, 9.5, 60.0, false, Some(0.0)),
     sight(0.0, 6.0, 30.0, 90.0, true, Some(0.0)),
@@ -48,6 +50,11 @@ const SIGHTS: [Sight; 14] = [
     sight(0.998, 8.0, 10.0, 80.0, true, Some(1.0)),
     Sight { softness: 0.4, ..sight(0.0, 26.0, 5.5, 45.0, true, Some(0.0)) },
     Sight { softness: 0.2, ..sight(0.9, 26.0, 10.0, 45.0, true, Some(0.0)) },
+    Sight { change: |disk| disk.retrograde = true, ..sight(0.9, 20.0, 15.0, 60.0, false, Some(0.0)) },
+    Sight { change: |disk| disk.opacity = 0.5, ..sight(0.3, 15.0, 30.0, 60.0, true, Some(0.0)) },
+    Sight { change: |disk| disk.inner_radius = 9.0, ..sight(0.0, 20.0, 20.0, 60.0, false, Some(0.0)) },
+    // Traced ray by ray.
+    Sight { change: |disk| disk.plunges = true, size: [160, 90], ..sight(0.5, 20.0, 40.0, 50.0, false, Some(0.0)) },
 ];
 
 /// Any view of a hole from without, with the sky or a disk or both.
@@ -78,6 +85,7 @@ impl Sight {
             Some(turbulence) => {
                 let disk = scene.disk.as_mut().unwrap();
                 (disk.turbulence, disk.edge_softness) = (turbulence, self.softness);
+                (self.change)(disk);
             }
         }
         scene.quality.method = method;

@@ -7,13 +7,16 @@ use super::{Group, ROUNDING, SAME, twin};
 use crate::cpu::refine::{LevelAbout, with_whole_turns};
 use crate::physics::lens::critical::{CurveLevel, potential_minimum};
 use crate::scene::cell::{CellCrossing, Crossed, share_below};
-use crate::scene::refine::{CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, NARROWEST, Strips, quarter_place, spread};
+use crate::scene::refine::{
+    CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, MATTER_NARROWEST, NARROWEST, Strips, quarter_place, spread,
+};
 use glam::DVec2;
 
 /// Each thread has the four samples of a pixel in arrays of its own, which are a workgroup's in the kernel.
 const HEAD: &str = "
 #import refine/refine
 #import shared/pass
+const MATTER_SAMPLES: u32 = CURVE_SAMPLES / 2u;
 fn ray_record(id: vec2<u32>) -> Record { var record: Record; return record; }
 fn medium_before(k: u32) -> vec4<f32> { return vec4<f32>(0.0, 0.0, 0.0, 1.0); }
 fn next_crossing() -> Crossing { var crossing: Crossing; return crossing; }
@@ -67,7 +70,7 @@ fn push_cell(i: &mut Inputs) {
             i.push(there[of]);
         }
     }
-    i.pick(3);
+    i.pick(5);
 }
 
 fn samples(i: &Inputs) -> Crossings {
@@ -126,21 +129,26 @@ pub fn group() -> Group {
         twin(
             strips,
             "spread narrowest",
-            "samples = CURVE_SAMPLES; out1(spread(in1(0u)));",
+            "samples = select(MATTER_SAMPLES, CURVE_SAMPLES, word(1u) == 0u); out1(spread(in1(0u)));",
             |i| {
                 i.signed(1e-4, 16.0);
+                i.pick(2);
             },
-            |i, o| o.near(spread(i.x(0), NARROWEST), 1.0),
+            |i, o| o.near(spread(i.x(0), [NARROWEST, MATTER_NARROWEST][i.word(1) as usize]), 1.0),
             ROUNDING,
         ),
         twin(
             strips,
             "gathered",
-            "samples = CURVE_SAMPLES; out1(gathered(in1(0u)));",
+            "samples = select(MATTER_SAMPLES, CURVE_SAMPLES, word(1u) == 0u); out1(gathered(in1(0u)));",
             |i| {
                 i.even(-8.0, 8.0);
+                i.pick(2);
             },
-            |i, o| o.near(NARROWEST * i.x(0).sinh(), NARROWEST),
+            |i, o| {
+                let narrowest = [NARROWEST, MATTER_NARROWEST][i.word(1) as usize];
+                o.near(narrowest * i.x(0).sinh(), narrowest);
+            },
             ROUNDING,
         ),
         twin(
@@ -148,7 +156,7 @@ pub fn group() -> Group {
             "strips_at strip_distance strip_cell sample_index strip_count",
             "samples = word(4u); lane = word(0u);
              let cell = strip_cell(strips_at(in1(3u), normalize(in2(1u)), 1.0));
-             out2(cell.place); out1(cell.distance); out1(cell.weight); out1(cell.first_half);",
+             out2(cell.place); out1(cell.distance); out1(cell.weight); out1(cell.weight * cell.first_half);",
             |i| {
                 i.pick(64);
                 slope(i);
@@ -162,8 +170,8 @@ pub fn group() -> Group {
                 o.all(cell.place, 1.0);
                 o.near(cell.distance, 1.0);
                 o.near(cell.weight, 1.0);
-                // The share of a narrow cell is a small difference.
-                o.near(cell.first_half, 1.0 / cell.weight.min(1.0));
+                // The share of a narrow cell is a small difference; its weight times this one is what counts.
+                o.near(cell.weight * cell.first_half, 1.0);
             },
             // Chords in a corner of the pixel are differences of numbers of a pixel's size.
             2e-4,
@@ -181,30 +189,48 @@ pub fn group() -> Group {
         ),
         twin(
             cell,
-            "covered cell_crossing change_of_u half_cell levels_on_disk sum_below",
+            "covered cell_crossing change_of_u even_change_of_g known_g half_cell levels_on_disk sum_below",
             "enter_scene(); frame.disk_u = in2(1u);
-             let whole = cell_crossing(in1(3u), in1(4u), in4(5u), in4(9u));
+             let g = vec4<f32>(known_g(in1(5u), in1(9u)), known_g(in1(6u), in1(10u)), known_g(in1(7u), in1(11u)),
+                 known_g(in1(8u), in1(12u)));
+             let whole = cell_crossing(in1(3u), known_g(in1(3u), in1(4u)), in4(5u), g);
              out1(whole.g);
              var part = whole;
-             if word(13u) > 0u {
+             if word(13u) == 1u || word(13u) == 2u {
                  part = half_cell(whole, f32(word(13u)) * 2.0 - 3.0);
              }
-             let levels = levels_on_disk(part);
+             var levels = levels_on_disk(part);
+             let middle = 0.5 * (levels.x + levels.y);
+             levels = select(levels, vec2<f32>(levels.x, middle), word(13u) == 3u);
+             levels = select(levels, vec2<f32>(middle, levels.y), word(13u) == 4u);
              out2(levels);
              let seen = covered(part, levels);
              out1(max(seen.x, 0.0));
              out2(select(vec2<f32>(0.0), seen.x * seen.yz, vec2<bool>(seen.x > 0.0)));",
             push_cell,
             |i, o| {
-                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4)));
-                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4)), [pair(5), pair(7)]);
-                let part = if i.word(13) > 0 { whole.half(f64::from(i.word(13)) * 2.0 - 3.0) } else { whole };
-                let levels = part.levels_on([i.x(1), i.x(2)]);
+                let inner = i.x(2);
+                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4), inner));
+                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4), inner), [pair(5), pair(7)]);
+                let part = match i.word(13) {
+                    side @ (1 | 2) => whole.half(f64::from(side) * 2.0 - 3.0),
+                    _ => whole,
+                };
+                let [low, high] = part.levels_on([i.x(1), inner]);
+                let middle = 0.5 * (low + high);
+                let levels = match i.word(13) {
+                    3 => [low, middle],
+                    4 => [middle, high],
+                    _ => [low, high],
+                };
                 o.near(whole.g, 0.0);
-                o.all(levels, 1.0);
+                // Rounding of u, which is some ten times as large, in the cell's own change of it.
+                let span = part.du[0].abs() + part.du[1].abs();
+                o.all(levels, span + 1e-3);
                 let seen = part.covered(levels);
-                o.near(seen.map_or(0.0, |seen| seen.share), 1.0);
-                o.all(seen.map_or([0.0; 2], |seen| [seen.share * seen.u, seen.share * seen.g]), 1.0);
+                o.near(seen.map_or(0.0, |seen| seen.share), 1.0 + 1e-3 / span.max(1e-6));
+                o.near(seen.map_or(0.0, |seen| seen.share * seen.u), 0.2 + 2e-4 / span.max(1e-6));
+                o.near(seen.map_or(0.0, |seen| seen.share * seen.g), 1.0 + 1e-3 / span.max(1e-6));
             },
             2e-4,
         ),
