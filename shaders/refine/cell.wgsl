@@ -16,9 +16,9 @@ struct CellCrossing {
     dg: vec2<f32>,
 }
 
-// g of a crossing at u; 0 where it is not known, inside the disk's inner edge.
-fn known_g(u: f32, g: f32) -> f32 {
-    return select(0.0, g, u <= frame.disk_u.y && g > 1e-20 && g < 1e30);
+// g of a crossing; 0 where it is not known.
+fn known_g(g: f32) -> f32 {
+    return select(0.0, g, g > 1e-20 && g < 1e30);
 }
 
 // The crossing over the cell of a sample where it has `u` and `g`; `others_u` and `others_g` are those of the samples
@@ -27,21 +27,23 @@ fn known_g(u: f32, g: f32) -> f32 {
 fn cell_crossing(u: f32, g: f32, others_u: vec4<f32>, others_g: vec4<f32>) -> CellCrossing {
     let along = select(others_g.y, others_g.x, others_g.x > 0.0);
     let across = select(others_g.w, others_g.z, others_g.z > 0.0);
-    // Inside the disk's inner edge g may be known in the next cell only.
+    // Inside the photon orbit g may be known in the next cell only.
     let here = select(select(along, across, across > 0.0), g, g > 0.0);
     let du = vec2<f32>(change_of_u(u, others_u.xy), change_of_u(u, others_u.zw));
-    let dg = vec2<f32>(even_change_of_g(here, others_g.xy), even_change_of_g(here, others_g.zw));
+    let dg = vec2<f32>(change_of_g(here, others_g.xy), change_of_g(here, others_g.zw));
     return CellCrossing(u, here, du, dg);
 }
 
-// The change of ln g from one cell to the next: the smaller of those from the cell before and to the cell after.
-fn even_change_of_g(here: f32, others: vec2<f32>) -> f32 {
+// The change of ln g from one cell to the next: the mean of those from the cell before and to the cell after, but at
+// most twice the smaller of the two, and 0 where one rises and the other falls; one-sided, at most MOST_ONE_SIDED.
+fn change_of_g(here: f32, others: vec2<f32>) -> f32 {
     let there = others > vec2<f32>(0.0);
     let sure = max(here, 1e-20);
     let ln = log(select(vec2<f32>(sure), others, there) / sure);
     let change = vec2<f32>(-ln.x, ln.y);
-    let smaller = max(min(change.x, change.y), 0.0) + min(max(change.x, change.y), 0.0);
-    return select(change.x + change.y, smaller, all(there));
+    let most = 2.0 * (max(min(change.x, change.y), 0.0) - min(max(change.x, change.y), 0.0));
+    let sum = change.x + change.y;
+    return select(clamp(sum, -MOST_ONE_SIDED, MOST_ONE_SIDED), clamp(0.5 * sum, -most, most), all(there));
 }
 
 fn change_of_u(u: f32, others: vec2<f32>) -> f32 {

@@ -56,7 +56,7 @@ const NO_LANE: u32 = LANES;
 // shows. Every one takes workgroup memory, which bounds how many threads run at once.
 const LANE_ORDERS: u32 = 8u;
 
-// The sample of each thread: u of its crossings by order, 0 where there is none, g of each, 0 where it is not known,
+// The sample of each thread: u of its crossings by order, 0 where there is none, g of each as known_g,
 // and with FOOTPRINTS azimuth and delay; its sky direction, and its fate as a number; how far it turned (sample_turn);
 // its light times its share of the pixel.
 var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
@@ -119,7 +119,7 @@ fn refine_sample(entry: u32, end: u32) {
         }
         let at = lane * LANE_ORDERS + crossing.order;
         lane_u[at] = crossing.u;
-        lane_g[at] = known_g(crossing.u, crossing.g);
+        lane_g[at] = known_g(crossing.g);
         if FOOTPRINTS {
             lane_place[at] = vec2<f32>(crossing.place.azimuth, crossing.place.delay);
         }
@@ -257,7 +257,7 @@ fn crossing_in(other: u32, order: u32) -> f32 {
     return select(0.0, known, other < NO_LANE && order < LANE_ORDERS);
 }
 
-// g of the crossing of `order` in a lane; 0 where it is not known.
+// g of the crossing of `order` in a lane, as known_g.
 fn g_in(other: u32, order: u32) -> f32 {
     let known = lane_g[min(other, LANES - 1u) * LANE_ORDERS + min(order, LANE_ORDERS - 1u)];
     return select(0.0, known, crossing_in(other, order) > 0.0);
@@ -302,7 +302,7 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
         crossing_in(beside.w, order));
     let others_g = vec4<f32>(g_in(beside.x, order), g_in(beside.y, order), g_in(beside.z, order),
         g_in(beside.w, order));
-    let cell = cell_crossing(crossing.u, known_g(crossing.u, crossing.g), others, others_g);
+    let cell = cell_crossing(crossing.u, known_g(crossing.g), others, others_g);
     var emission = vec4<f32>(0.0);
     for (var i = 0u; i < not_inlined(2u); i += 1u) {
         var part = cell;

@@ -151,7 +151,7 @@ impl<'a> Refiner<'a> {
         first_half: Option<f64>,
     ) -> ArrayVec<(Crossing, f64), 2> {
         let Some(disk_u) = self.disk_u else { return ArrayVec::new() };
-        let cell = samples.over_cell(index, crossing, disk_u[1]);
+        let cell = samples.over_cell(index, crossing);
         let parts = match first_half {
             Some(first) => [(-1.0, first), (1.0, 1.0 - first)].map(|(side, weight)| {
                 let half = cell.half(side);
@@ -213,13 +213,13 @@ impl<'a> Samples<'a> {
         Some(record)
     }
 
-    /// A crossing of a sample over its cell. `inner`: 1/r of the disk's inner edge.
-    fn over_cell(&self, index: u32, crossing: &Crossing, inner: f64) -> CellCrossing {
+    /// A crossing of a sample over its cell.
+    fn over_cell(&self, index: u32, crossing: &Crossing) -> CellCrossing {
         let same = |there: Option<&Record>| {
             let same = there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order));
-            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g, inner))
+            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g))
         };
-        CellCrossing::new(Crossed::new(crossing.u, crossing.g, inner), self.beside(index).map(|pair| pair.map(same)))
+        CellCrossing::new(Crossed::new(crossing.u, crossing.g), self.beside(index).map(|pair| pair.map(same)))
     }
 }
 

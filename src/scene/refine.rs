@@ -329,7 +329,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn share_on(u: f64, beside: [[f64; 2]; 2], disk_u: [f64; 2]) -> f64 {
-        let crossed = |u| Crossed::new(u, 1.0, disk_u[1]);
+        let crossed = |u| Crossed::new(u, 1.0);
         let cell = CellCrossing::new(crossed(u), beside.map(|pair| pair.map(crossed)));
         cell.covered(cell.levels_on(disk_u)).map_or(0.0, |covered| covered.share)
     }

@@ -183,6 +183,7 @@ fn all() -> Vec<(&'static str, Value)> {
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
         LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
+        MOST_ONE_SIDED: f32 = cell::MOST_ONE_SIDED;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
         PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
 

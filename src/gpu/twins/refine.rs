@@ -189,11 +189,10 @@ pub fn group() -> Group {
         ),
         twin(
             cell,
-            "covered cell_crossing change_of_u even_change_of_g known_g half_cell levels_on_disk sum_below",
+            "covered cell_crossing change_of_u change_of_g known_g half_cell levels_on_disk sum_below",
             "enter_scene(); frame.disk_u = in2(1u);
-             let g = vec4<f32>(known_g(in1(5u), in1(9u)), known_g(in1(6u), in1(10u)), known_g(in1(7u), in1(11u)),
-                 known_g(in1(8u), in1(12u)));
-             let whole = cell_crossing(in1(3u), known_g(in1(3u), in1(4u)), in4(5u), g);
+             let g = vec4<f32>(known_g(in1(9u)), known_g(in1(10u)), known_g(in1(11u)), known_g(in1(12u)));
+             let whole = cell_crossing(in1(3u), known_g(in1(4u)), in4(5u), g);
              out1(whole.g);
              var part = whole;
              if word(13u) == 1u || word(13u) == 2u {
@@ -209,14 +208,13 @@ pub fn group() -> Group {
              out2(select(vec2<f32>(0.0), seen.x * seen.yz, vec2<bool>(seen.x > 0.0)));",
             push_cell,
             |i, o| {
-                let inner = i.x(2);
-                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4), inner));
-                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4), inner), [pair(5), pair(7)]);
+                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4)));
+                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4)), [pair(5), pair(7)]);
                 let part = match i.word(13) {
                     side @ (1 | 2) => whole.half(f64::from(side) * 2.0 - 3.0),
                     _ => whole,
                 };
-                let [low, high] = part.levels_on([i.x(1), inner]);
+                let [low, high] = part.levels_on([i.x(1), i.x(2)]);
                 let middle = 0.5 * (low + high);
                 let levels = match i.word(13) {
                     3 => [low, middle],
