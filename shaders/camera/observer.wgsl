@@ -227,7 +227,21 @@ fn plunging_frequency(c: Constants, u: f32, du: f32) -> f32 {
 
 // g of the disk's matter on its circular orbit (physics::orbit::redshift).
 fn redshift_of(c: Constants, u: f32) -> f32 {
+    return c.nu_local * orbital_redshift(c.energy, c.angular_momentum, u);
+}
+
+// This g of light that has E and L in units of the frequency that is received.
+fn orbital_redshift(energy: f32, angular_momentum: f32, u: f32) -> f32 {
     let v = sign(frame.signed_isco) * u * sqrt(u);
-    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0))
-        / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
+    return sqrt(max(1.0 - 3.0 * u + 2.0 * frame.spin * v, 0.0))
+        / (energy * (1.0 + frame.spin * v) - v * angular_momentum);
+}
+
+// The factor by which g at 1/r = after_u differs from that at before_u (Matter::change_of_g).
+fn change_of_g(energy: f32, angular_momentum: f32, before_u: f32, after_u: f32) -> f32 {
+    let before = orbital_redshift(energy, angular_momentum, before_u);
+    let after = orbital_redshift(energy, angular_momentum, after_u);
+    let known = before > 0.0 && after > 0.0 && after < MOST_CHANGE_OF_G * before;
+    let plunges = max(before_u, after_u) * frame.plunge_isco > 1.0;
+    return select(1.0, after / before, known && !plunges);
 }

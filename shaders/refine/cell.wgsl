@@ -5,45 +5,19 @@
 #import constants
 #import shared/frame
 
-// A crossing over a cell, 1 x 1 about its middle.
+// u of a crossing over a cell, 1 x 1 about its middle.
 struct CellCrossing {
-    // In the middle; g is 0 where it is not known.
+    // In the middle.
     u: f32,
-    g: f32,
-    // Changes of u and of ln g to the next cell along the strip and across the curve, or to the next quarter in the row
-    // and the column.
+    // Its changes to the next cell along the strip and across the curve, or to the next quarter in the row and the
+    // column.
     du: vec2<f32>,
-    dg: vec2<f32>,
 }
 
-// g of a crossing; 0 where it is not known.
-fn known_g(g: f32) -> f32 {
-    return select(0.0, g, g > 1e-20 && g < 1e30);
-}
-
-// The crossing over the cell of a sample where it has `u` and `g`; `others_u` and `others_g` are those of the samples
-// before and after it along the strip (or the row), and before and after it across the curve (or in the column). u is 0
-// where there is no crossing, g is known_g.
-fn cell_crossing(u: f32, g: f32, others_u: vec4<f32>, others_g: vec4<f32>) -> CellCrossing {
-    let along = select(others_g.y, others_g.x, others_g.x > 0.0);
-    let across = select(others_g.w, others_g.z, others_g.z > 0.0);
-    // Inside the photon orbit g may be known in the next cell only.
-    let here = select(select(along, across, across > 0.0), g, g > 0.0);
-    let du = vec2<f32>(change_of_u(u, others_u.xy), change_of_u(u, others_u.zw));
-    let dg = vec2<f32>(change_of_g(here, others_g.xy), change_of_g(here, others_g.zw));
-    return CellCrossing(u, here, du, dg);
-}
-
-// The change of ln g from one cell to the next: the mean of those from the cell before and to the cell after, but at
-// most twice the smaller of the two, and 0 where one rises and the other falls; one-sided, at most MOST_ONE_SIDED.
-fn change_of_g(here: f32, others: vec2<f32>) -> f32 {
-    let there = others > vec2<f32>(0.0);
-    let sure = max(here, 1e-20);
-    let ln = log(select(vec2<f32>(sure), others, there) / sure);
-    let change = vec2<f32>(-ln.x, ln.y);
-    let most = 2.0 * (max(min(change.x, change.y), 0.0) - min(max(change.x, change.y), 0.0));
-    let sum = change.x + change.y;
-    return select(clamp(sum, -MOST_ONE_SIDED, MOST_ONE_SIDED), clamp(0.5 * sum, -most, most), all(there));
+// The crossing at u over the cell of its sample; `others` is u of the samples before and after it along the strip (or
+// the row), and before and after it across the curve (or in the column), 0 where there is no crossing.
+fn cell_crossing(u: f32, others: vec4<f32>) -> CellCrossing {
+    return CellCrossing(u, vec2<f32>(change_of_u(u, others.xy), change_of_u(u, others.zw)));
 }
 
 fn change_of_u(u: f32, others: vec2<f32>) -> f32 {
@@ -54,9 +28,7 @@ fn change_of_u(u: f32, others: vec2<f32>) -> f32 {
 
 // The half of a cell before its middle across the curve (`side` -1) or behind it (1).
 fn half_cell(cell: CellCrossing, side: f32) -> CellCrossing {
-    let off = 0.25 * side;
-    let halved = vec2<f32>(1.0, 0.5);
-    return CellCrossing(cell.u + off * cell.du.y, cell.g * exp(off * cell.dg.y), halved * cell.du, halved * cell.dg);
+    return CellCrossing(cell.u + 0.25 * side * cell.du.y, vec2<f32>(1.0, 0.5) * cell.du);
 }
 
 // Between which differences from u in its middle a cell lies on the disk; the first is above the second where it does
@@ -67,8 +39,8 @@ fn levels_on_disk(cell: CellCrossing) -> vec2<f32> {
 }
 
 // The part of a cell in which u differs from that in the middle by `levels`, which lie among those of levels_on_disk:
-// its share of the cell, the mean of u in it, and g where u is that. The share is 0 or less where there is none.
-fn covered(cell: CellCrossing, levels: vec2<f32>) -> vec3<f32> {
+// its share of the cell, 0 or less where there is none, and the mean of u in it.
+fn covered(cell: CellCrossing, levels: vec2<f32>) -> vec2<f32> {
     let du = cell.du;
     let below = vec2<f32>(share_below(levels.x, du), share_below(levels.y, du));
     let share = below.y - below.x;
@@ -76,10 +48,7 @@ fn covered(cell: CellCrossing, levels: vec2<f32>) -> vec3<f32> {
     // The mean of a quantity between two values, from the shares below each (integrated by parts).
     let mean = (levels.y * below.y - levels.x * below.x - sum) / max(share, 1e-20);
     let off = min(max(mean, levels.x), levels.y);
-    // The nearest place of the cell where u is so much off.
-    let steepness = max(length(du), LEAST_SLOPE);
-    let ln_g = off / steepness * dot(du / steepness, cell.dg);
-    return vec3<f32>(min(share, 1.0), cell.u + off, cell.g * exp(ln_g));
+    return vec2<f32>(min(share, 1.0), cell.u + off);
 }
 
 // Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two

@@ -7,6 +7,7 @@
 // time until the last of them ends. One row takes the pixels that the second of those listed.
 
 #import constants
+#import camera/observer
 #import camera/projection
 #import emit/clouds
 #import records/record
@@ -56,11 +57,10 @@ const NO_LANE: u32 = LANES;
 // shows. Every one takes workgroup memory, which bounds how many threads run at once.
 const LANE_ORDERS: u32 = 8u;
 
-// The sample of each thread: u of its crossings by order, 0 where there is none, g of each as known_g,
+// The sample of each thread: u of its crossings by order, 0 where there is none,
 // and with FOOTPRINTS azimuth and delay; its sky direction, and its fate as a number; how far it turned (sample_turn);
 // its light times its share of the pixel.
 var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
-var<workgroup> lane_g: array<f32, LANES * LANE_ORDERS>;
 var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
 var<workgroup> lane_sky: array<vec4<f32>, LANES>;
 var<workgroup> lane_turn: array<f32, LANES>;
@@ -119,7 +119,6 @@ fn refine_sample(entry: u32, end: u32) {
         }
         let at = lane * LANE_ORDERS + crossing.order;
         lane_u[at] = crossing.u;
-        lane_g[at] = known_g(crossing.g);
         if FOOTPRINTS {
             lane_place[at] = vec2<f32>(crossing.place.azimuth, crossing.place.delay);
         }
@@ -257,12 +256,6 @@ fn crossing_in(other: u32, order: u32) -> f32 {
     return select(0.0, known, other < NO_LANE && order < LANE_ORDERS);
 }
 
-// g of the crossing of `order` in a lane, as known_g.
-fn g_in(other: u32, order: u32) -> f32 {
-    let known = lane_g[min(other, LANES - 1u) * LANE_ORDERS + min(order, LANE_ORDERS - 1u)];
-    return select(0.0, known, crossing_in(other, order) > 0.0);
-}
-
 // The change of a crossing's place from one cell to the next, as change_of_sky.
 fn change_of_place(here: Crossing, order: u32, others: vec2<u32>) -> EmissionPoint {
     let u = vec2<f32>(crossing_in(others.x, order), crossing_in(others.y, order));
@@ -300,9 +293,7 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
     let order = crossing.order;
     let others = vec4<f32>(crossing_in(beside.x, order), crossing_in(beside.y, order), crossing_in(beside.z, order),
         crossing_in(beside.w, order));
-    let others_g = vec4<f32>(g_in(beside.x, order), g_in(beside.y, order), g_in(beside.z, order),
-        g_in(beside.w, order));
-    let cell = cell_crossing(crossing.u, known_g(crossing.g), others, others_g);
+    let cell = cell_crossing(crossing.u, others);
     var emission = vec4<f32>(0.0);
     for (var i = 0u; i < not_inlined(2u); i += 1u) {
         var part = cell;
@@ -321,7 +312,7 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
             var covering = crossing;
             covering.share = seen.x;
             covering.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
-            covering.g = seen.z;
+            covering.g *= change_of_g(here.energy, here.angular_momentum, crossing.u, covering.u);
             emission += weight * crossing_emission(here, covering, open);
         }
     }

@@ -7,9 +7,10 @@ use super::record_source::RecordSource;
 use super::shade::Shader;
 use crate::emit::{Crossing, Emission};
 use crate::physics::lens::critical::CurveLevel;
+use crate::physics::plunge::Matter;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::scene::Scene;
-use crate::scene::cell::{CellCrossing, Covered, Crossed};
+use crate::scene::cell::{CellCrossing, Covered};
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{
@@ -25,6 +26,8 @@ pub struct Refiner<'a> {
     /// Gives crossings of the whole plane; nothing is hidden in it.
     plane: RecordSource<'a>,
     disk_u: Option<[f64; 2]>,
+    matter: Matter,
+    spin: f64,
     /// Where the disk hides what is behind it.
     opaque_u: Option<[f64; 2]>,
     lens: &'a Lens,
@@ -55,6 +58,8 @@ impl<'a> Refiner<'a> {
         Self {
             plane,
             disk_u: emitters.disk_u(),
+            matter: scene.matter(),
+            spin: scene.hole.spin,
             opaque_u: emitters.opaque_u(),
             lens,
             level: CurveLevel::new(&lens.observer.frame),
@@ -163,9 +168,12 @@ impl<'a> Refiner<'a> {
                 [[low, middle], [middle, high]].map(|levels| (cell, levels, 1.0))
             }
         };
+        let ray = samples.records.get(index as usize).map_or([1.0, 0.0], |ray| [ray.energy, ray.angular_momentum]);
         let seen = parts.into_iter().filter_map(|(part, levels, weight)| {
-            let Covered { share, u, g } = part.covered(levels)?;
-            Some((Crossing { u: u.max(disk_u[0]).min(disk_u[1]), g, share, ..*crossing }, weight))
+            let Covered { share, u } = part.covered(levels)?;
+            let u = u.max(disk_u[0]).min(disk_u[1]);
+            let g = crossing.g * self.matter.change_of_g(self.spin, ray, crossing.u, u);
+            Some((Crossing { u, g, share, ..*crossing }, weight))
         });
         seen.collect()
     }
@@ -216,10 +224,9 @@ impl<'a> Samples<'a> {
     /// A crossing of a sample over its cell.
     fn over_cell(&self, index: u32, crossing: &Crossing) -> CellCrossing {
         let same = |there: Option<&Record>| {
-            let same = there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order));
-            same.map_or(Crossed::default(), |c| Crossed::new(c.u, c.g))
+            there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order)).map_or(0.0, |c| c.u)
         };
-        CellCrossing::new(Crossed::new(crossing.u, crossing.g), self.beside(index).map(|pair| pair.map(same)))
+        CellCrossing::new(crossing.u, self.beside(index).map(|pair| pair.map(same)))
     }
 }
 

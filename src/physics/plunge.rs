@@ -70,6 +70,10 @@ impl Plunge {
     }
 }
 
+/// The most that `Matter::change_of_g` says: where g falls to 0, at the photon orbit, f32 tracers cannot tell the
+/// factor.
+pub(crate) const MOST_CHANGE_OF_G: f64 = 1e3;
+
 /// The motion of matter in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matter {
@@ -93,6 +97,17 @@ impl Matter {
             Some(plunge) => c.nu_local / plunge.frequency(c, u, du),
             None => redshift(c.a, u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
         }
+    }
+
+    /// The factor by which g of matter at 1/r = `to` differs from that at `from` for light with these E and L, in units
+    /// of one frequency. 1 where that takes more than E and L, because the matter plunges at one of them, and where g
+    /// is not known.
+    pub fn change_of_g(&self, spin: f64, [energy, angular_momentum]: [f64; 2], from: f64, to: f64) -> f64 {
+        if self.plunge.is_some() && from.max(to) * self.isco > 1.0 {
+            return 1.0;
+        }
+        let [before, after] = [from, to].map(|u| redshift(spin, u, self.retrograde, energy, angular_momentum, 1.0));
+        if before > 0.0 && after > 0.0 && after < MOST_CHANGE_OF_G * before { after / before } else { 1.0 }
     }
 
     /// Whether it moves as [`Matter::redshift`] has it at 1/r = `u`: there is no matter inside the ISCO that does not

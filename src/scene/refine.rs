@@ -324,13 +324,12 @@ impl Crossings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::cell::{CellCrossing, Crossed};
+    use crate::scene::cell::CellCrossing;
     use glam::DVec2;
     use std::f64::consts::TAU;
 
     fn share_on(u: f64, beside: [[f64; 2]; 2], disk_u: [f64; 2]) -> f64 {
-        let crossed = |u| Crossed::new(u, 1.0);
-        let cell = CellCrossing::new(crossed(u), beside.map(|pair| pair.map(crossed)));
+        let cell = CellCrossing::new(u, beside);
         cell.covered(cell.levels_on(disk_u)).map_or(0.0, |covered| covered.share)
     }
 

@@ -21,7 +21,7 @@ use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
-use crate::physics::{blackbody, flow, geodesic, quadrature};
+use crate::physics::{blackbody, flow, geodesic, plunge, quadrature};
 use crate::scene::cell;
 use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
@@ -183,7 +183,7 @@ fn all() -> Vec<(&'static str, Value)> {
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
         LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
-        MOST_ONE_SIDED: f32 = cell::MOST_ONE_SIDED;
+        MOST_CHANGE_OF_G: f32 = plunge::MOST_CHANGE_OF_G;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
         PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
 

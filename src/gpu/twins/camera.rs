@@ -288,12 +288,14 @@ pub fn group() -> Group {
     twins.push(
         twin(
             observer,
-            "redshift_of",
-            "enter_scene(); out1(redshift_of(begin_local(normalize(in3(1u))).c, in1(4u)));",
+            "redshift_of orbital_redshift change_of_g",
+            "enter_scene(); let c = begin_local(normalize(in3(1u))).c; out1(redshift_of(c, in1(4u)));
+             out1(change_of_g(c.energy / c.nu_local, c.angular_momentum / c.nu_local, in1(4u), in1(5u)));",
             |i| {
                 let view = Kind::Spinning.push(i);
                 push_look(i, view);
                 let [far, near] = view.scene.emitters().disk_u().expect("a disk");
+                i.even(far, near.min(1.0 / view.scene.disk_isco()));
                 i.even(far, near.min(1.0 / view.scene.disk_isco()));
             },
             |i, o| {
@@ -301,7 +303,12 @@ pub fn group() -> Group {
                 let (c, _) = lens.observer.frame.start(i.v3(1).normalize()).expect("a ray");
                 let g = redshift(c.a, i.x(4), scene.retrograde(), c.energy, c.angular_momentum, c.nu_local);
                 // E - Omega L cancels: g is as uncertain as it is large.
-                o.near(g, g * g * (c.energy.abs() + i.x(4).powf(1.5) * c.angular_momentum.abs()) / c.nu_local);
+                let uncertain =
+                    |g: f64, u: f64| g * (c.energy.abs() + u.powf(1.5) * c.angular_momentum.abs()) / c.nu_local;
+                o.near(g, g * uncertain(g, i.x(4)));
+                let ray = [c.energy, c.angular_momentum].map(|v| v / c.nu_local);
+                let change = scene.matter().change_of_g(c.a, ray, i.x(4), i.x(5));
+                o.near(change, change * (uncertain(g, i.x(4)) + uncertain(change * g, i.x(5))));
             },
             UNIFORM,
         )

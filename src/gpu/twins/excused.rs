@@ -171,7 +171,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("refine/refine", "seen_crossing seen_emission seen_sky go_to_cell", REFINED),
     ("refine/strips", "corrected_place", REFINED),
     ("refine/refine", "cell_footprint change_of_sky change_of_turn has_escaped change_of_place", REFINED),
-    ("refine/refine", "beside_cell crossing_in g_in in_quarters", Plumbing("it finds a lane")),
+    ("refine/refine", "beside_cell crossing_in in_quarters", Plumbing("it finds a lane")),
     ("refine/traced", "ray_record with_sky sample_turn next_crossing more_crossings rewind_crossings", REFINED),
     ("shade/only", "take_light", HOOK),
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),

@@ -6,7 +6,7 @@ use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
 use crate::cpu::refine::{LevelAbout, with_whole_turns};
 use crate::physics::lens::critical::{CurveLevel, potential_minimum};
-use crate::scene::cell::{CellCrossing, Crossed, share_below};
+use crate::scene::cell::{CellCrossing, share_below};
 use crate::scene::refine::{
     CURVE_SAMPLES, Crossings, MATTER_CURVE_SAMPLES, MATTER_NARROWEST, NARROWEST, Strips, quarter_place, spread,
 };
@@ -51,24 +51,16 @@ fn push_samples(i: &mut Inputs) {
     i.pick(4);
 }
 
-/// A scene, the disk's radii, u and g of a sample and of those beside it, and which part of its cell is seen.
+/// A scene, the disk's radii, u of a sample and of those beside it, and which part of its cell is seen.
 fn push_cell(i: &mut Inputs) {
     Kind::Static.push(i);
     let far = i.log(0.005, 0.1);
     let near = i.even(far * 1.2, 0.3);
     let (middle, span) = (i.random.even(0.4 * far, 1.4 * near), i.random.log(1e-4, 0.2));
-    let crossed = |i: &mut Inputs| {
-        let (u, g) = (middle + i.random.even(-0.5, 0.5) * span, i.random.log(0.2, 2.0));
-        let [lacks_u, lacks_g] = [12, 8].map(|part| i.random.below(part) == 0);
-        [if lacks_u { 0.0 } else { u.max(1e-4) }, if lacks_g || lacks_u { 0.0 } else { g }]
-    };
-    let [here, beside @ ..] = [0; 5].map(|_| crossed(i));
-    i.push(here[0].max(1e-4));
-    i.push(here[1]);
-    for of in 0..2 {
-        for there in beside {
-            i.push(there[of]);
-        }
+    for number in 0..5 {
+        let u = (middle + i.random.even(-0.5, 0.5) * span).max(1e-4);
+        let missing = number > 0 && i.random.below(12) == 0;
+        i.push(if missing { 0.0 } else { u });
     }
     i.pick(5);
 }
@@ -189,46 +181,41 @@ pub fn group() -> Group {
         ),
         twin(
             cell,
-            "covered cell_crossing change_of_u change_of_g known_g half_cell levels_on_disk sum_below",
+            "covered cell_crossing change_of_u half_cell levels_on_disk sum_below",
             "enter_scene(); frame.disk_u = in2(1u);
-             let g = vec4<f32>(known_g(in1(9u)), known_g(in1(10u)), known_g(in1(11u)), known_g(in1(12u)));
-             let whole = cell_crossing(in1(3u), known_g(in1(4u)), in4(5u), g);
-             out1(whole.g);
+             let whole = cell_crossing(in1(3u), in4(4u));
              var part = whole;
-             if word(13u) == 1u || word(13u) == 2u {
-                 part = half_cell(whole, f32(word(13u)) * 2.0 - 3.0);
+             if word(8u) == 1u || word(8u) == 2u {
+                 part = half_cell(whole, f32(word(8u)) * 2.0 - 3.0);
              }
              var levels = levels_on_disk(part);
              let middle = 0.5 * (levels.x + levels.y);
-             levels = select(levels, vec2<f32>(levels.x, middle), word(13u) == 3u);
-             levels = select(levels, vec2<f32>(middle, levels.y), word(13u) == 4u);
+             levels = select(levels, vec2<f32>(levels.x, middle), word(8u) == 3u);
+             levels = select(levels, vec2<f32>(middle, levels.y), word(8u) == 4u);
              out2(levels);
              let seen = covered(part, levels);
              out1(max(seen.x, 0.0));
-             out2(select(vec2<f32>(0.0), seen.x * seen.yz, vec2<bool>(seen.x > 0.0)));",
+             out1(max(seen.x, 0.0) * seen.y);",
             push_cell,
             |i, o| {
-                let pair = |at: usize| [at, at + 1].map(|k| Crossed::new(i.x(k), i.x(k + 4)));
-                let whole = CellCrossing::new(Crossed::new(i.x(3), i.x(4)), [pair(5), pair(7)]);
-                let part = match i.word(13) {
+                let whole = CellCrossing::new(i.x(3), [[i.x(4), i.x(5)], [i.x(6), i.x(7)]]);
+                let part = match i.word(8) {
                     side @ (1 | 2) => whole.half(f64::from(side) * 2.0 - 3.0),
                     _ => whole,
                 };
                 let [low, high] = part.levels_on([i.x(1), i.x(2)]);
                 let middle = 0.5 * (low + high);
-                let levels = match i.word(13) {
+                let levels = match i.word(8) {
                     3 => [low, middle],
                     4 => [middle, high],
                     _ => [low, high],
                 };
-                o.near(whole.g, 0.0);
                 // Rounding of u, which is some ten times as large, in the cell's own change of it.
                 let span = part.du[0].abs() + part.du[1].abs();
                 o.all(levels, span + 1e-3);
                 let seen = part.covered(levels);
                 o.near(seen.map_or(0.0, |seen| seen.share), 1.0 + 1e-3 / span.max(1e-6));
                 o.near(seen.map_or(0.0, |seen| seen.share * seen.u), 0.2 + 2e-4 / span.max(1e-6));
-                o.near(seen.map_or(0.0, |seen| seen.share * seen.g), 1.0 + 1e-3 / span.max(1e-6));
             },
             2e-4,
         ),
