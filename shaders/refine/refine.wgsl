@@ -57,9 +57,9 @@ const NO_LANE: u32 = LANES;
 // shows. Every one takes workgroup memory, which bounds how many threads run at once.
 const LANE_ORDERS: u32 = 8u;
 
-// The sample of each thread: u of its crossings by order, 0 where there is none,
-// and with FOOTPRINTS azimuth and delay; its sky direction, and its fate as a number; how far it turned (sample_turn);
-// its light times its share of the pixel.
+// The sample of each thread: u of its crossings by order, 0 where there is none, and with FOOTPRINTS their azimuth and
+// delay; its sky direction, and its fate as a number; how far it turned (sample_turn); its light times its share of the
+// pixel.
 var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
 var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
 var<workgroup> lane_sky: array<vec4<f32>, LANES>;

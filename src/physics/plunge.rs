@@ -99,9 +99,9 @@ impl Matter {
         }
     }
 
-    /// The factor by which g of matter at 1/r = `to` differs from that at `from` for light with these E and L, in units
-    /// of one frequency. 1 where that takes more than E and L, because the matter plunges at one of them, and where g
-    /// is not known.
+    /// The factor by which g of matter at 1/r = `to` differs from that at `from`, for light that has this energy and
+    /// angular momentum where the observer measures frequency 1. It is 1 where the matter plunges at either place, as
+    /// that takes more than these two numbers, and where g is not known.
     pub fn change_of_g(&self, spin: f64, [energy, angular_momentum]: [f64; 2], from: f64, to: f64) -> f64 {
         if self.plunge.is_some() && from.max(to) * self.isco > 1.0 {
             return 1.0;
