@@ -10,7 +10,7 @@
 //!   be ten times that of the next.
 //! - Quarters of a pixel in two ranges of u: the disk's light vanishes at its inner edge, and grows steeply from there.
 
-/// u of a crossing over a cell, 1 x 1 about its middle.
+/// u = 1/r, in 1/M, of a crossing over a cell, 1 x 1 about its middle.
 #[derive(Clone, Copy, Debug)]
 pub struct CellCrossing {
     /// In the middle.
@@ -23,7 +23,7 @@ pub struct CellCrossing {
 /// A part of a cell that lies on the disk.
 #[derive(Clone, Copy, Debug)]
 pub struct Covered {
-    /// The share of the cell, above 0.
+    /// The share of the cell, above 0, at most 1.
     pub share: f64,
     /// The mean of u in the part.
     pub u: f64,
