@@ -237,11 +237,10 @@ fn orbital_redshift(energy: f32, angular_momentum: f32, u: f32) -> f32 {
         / (energy * (1.0 + frame.spin * v) - v * angular_momentum);
 }
 
-// The factor by which g at 1/r = after_u differs from that at before_u (Matter::change_of_g).
-fn change_of_g(energy: f32, angular_momentum: f32, before_u: f32, after_u: f32) -> f32 {
-    let before = orbital_redshift(energy, angular_momentum, before_u);
-    let after = orbital_redshift(energy, angular_momentum, after_u);
-    let known = before > 0.0 && after > 0.0 && after < MOST_CHANGE_OF_G * before;
-    let plunges = max(before_u, after_u) * frame.plunge_isco > 1.0;
-    return select(1.0, after / before, known && !plunges);
+// g of light that has this E and L where the local observer measures frequency 1, from matter at 1/r = u near its
+// crossing of the plane, of which 1/r and g are `known` (Matter::redshift_beside). `ratio`: nu(camera) / nu(local
+// frame).
+fn redshift_beside(energy: f32, angular_momentum: f32, ratio: f32, u: f32, known: vec2<f32>) -> f32 {
+    let plunges = max(u, known.x) * frame.plunge_isco > 1.0;
+    return select(ratio * orbital_redshift(energy, angular_momentum, u), known.y, plunges);
 }

@@ -60,7 +60,6 @@ fn ray_record(id: vec2<u32>) -> Record {
         if traced.fate == FATE_ESCAPED {
             let end = escape(begin.c, traced);
             record.sky = chart_direction(end.n, end.drag);
-            record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
         }
     }
     deferred_order = 0u;

@@ -122,16 +122,21 @@ fn sky_is_good() -> bool {
 // Flags of the crossings in component `k` of a layer, whose order is `order`. Bits 0 .. 15 say that a crossing of that
 // order may hit the disk, KERR_DIRECT that the rays of the cell are to be integrated.
 fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
-    let margin = 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
-    // Pixels beside an edge look for it, too; as `REACHED_U` of scene/refine.rs.
-    let near = frame.plane_u.y * 1.15;
+    let margin = margin_of(p, k);
+    let near = nearest_u();
     let far = frame.plane_u.x / 1.5;
     let reach = far * select(1.0, KERR_NARROW_REACH, order > 0u);
-    if near < far || p.low[k] - margin > near || p.high[k] + margin < reach {
+    let inwards = max(near, min(lens.capture_u, KERR_NARROW_REACH_INWARDS * near));
+    let reach_inwards = select(near, inwards, order > 0u);
+    if near < far || p.low[k] - margin > reach_inwards || p.high[k] + margin < reach {
         return 0u;
     }
     let bit = 1u << order;
-    if max(abs(p.low[k]), abs(p.high[k])) >= KERR_NO_CROSSING {
+    let come = max(abs(p.low[k]), abs(p.high[k])) < KERR_NO_CROSSING;
+    if is_inside_disk(p, k) {
+        return select(0u, bit, come);
+    }
+    if !come {
         return bit | KERR_DIRECT;
     }
     let size = clamp(p.low[k], far, near);
@@ -142,6 +147,21 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let noise = 6e-8 * max(abs(p.low[k]), abs(p.high[k]));
     let good = p.error[k] + noise <= KERR_RADIUS_TOLERANCE * conditioning * size;
     return bit | select(KERR_DIRECT, 0u, good);
+}
+
+// Greatest 1/r of crossings that pixels beside the disk's inner edge look for (reached_u of src/scene/refine.rs).
+fn nearest_u() -> f32 {
+    return frame.plane_u.y * 1.15;
+}
+
+// By how much values may lie beyond those of the nodes.
+fn margin_of(p: Patch, k: u32) -> f32 {
+    return 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
+}
+
+// Whether crossings lie nearer to the hole than those: they need not be exact.
+fn is_inside_disk(p: Patch, k: u32) -> bool {
+    return p.low[k] - margin_of(p, k) > nearest_u();
 }
 
 fn pattern_is_good(p: Patch) -> bool {
@@ -182,7 +202,7 @@ fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var order = 0u; order < orders; order += 1u) {
             let p = patch_of(order);
             let here = crossing_flags(p, 0u, order);
-            let good = here == 0u || pattern_is_good(p);
+            let good = here == 0u || is_inside_disk(p, 0u) || pattern_is_good(p);
             flags |= here | select(KERR_DIRECT, 0u, good);
         }
     } else {

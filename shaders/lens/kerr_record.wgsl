@@ -105,10 +105,10 @@ fn look_up(id: vec2<u32>) -> Record {
     lookup.dy = vec2<f32>(column_change.y, row_change.y);
 
     var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local,
-        polar_momentum(begin, seen.frequency_ratio), 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+        polar_momentum(begin, seen.frequency_ratio), 0.0, seen.frequency_ratio / energy, vec3<f32>(0.0),
+        UNKNOWN_FOOTPRINT);
     if !inner {
         record.fate = FATE_ESCAPED;
-        record.sky_redshift = seen.frequency_ratio / energy;
     }
     if t_hat < exp2(-KERR_OCTAVES) || (lookup.flags & KERR_DIRECT) != 0u {
         record.fate = FATE_PENDING;
@@ -205,7 +205,8 @@ fn next_looked_up() -> Crossing {
         let lane = select(order % 4u, 0u, PATTERN);
         let u = at.value[lane];
         lookup.on_edge = lookup.on_edge || near_disk_edge(u, looked_up_change(at, lane));
-        if is_wanted(u) && u < KERR_NO_CROSSING {
+        // Beyond these, tables hold no places of crossings.
+        if is_wanted(u) && u <= max(frame.capture_u, 1.15 * frame.plane_u.y) {
             crossing.u = u;
             crossing.order = order;
         }

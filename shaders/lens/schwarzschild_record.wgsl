@@ -119,12 +119,9 @@ fn ray_record(id: vec2<u32>) -> Record {
     // L = r sin(theta) p_phi, p = -n.
     let momentum = -frame.observer_sine * n.z / frame.observer_u;
     let polar = polar_momentum(begin_local(n), seen.frequency_ratio);
-    var record = Record(FATE_CAPTURED, 0u, energy, momentum, polar, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
-    if escaped {
-        record.fate = FATE_ESCAPED;
-        record.sky_redshift = seen.frequency_ratio / energy;
-    }
-    return record;
+    let fate = select(FATE_CAPTURED, FATE_ESCAPED, escaped);
+    let g = seen.frequency_ratio / energy;
+    return Record(fate, 0u, energy, momentum, polar, 0.0, g, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
 }
 
 fn with_sky(record: Record) -> Record {

@@ -46,7 +46,7 @@ struct Record {
     polar_momentum: f32,
     // 1/r of the first crossing of the plane, even where nothing shines; 0 without one. Set for VIEW_METRIC only.
     plane_u: f32,
-    // nu(camera) / nu(at infinity); 0 unless escaped.
+    // nu(camera) / nu(at infinity), whether the ray goes there or not; 0 of captured rays that were traced before.
     sky_redshift: f32,
     // The direction in which the ray escapes, a unit vector in chart axes (z along the spin), and its footprint;
     // with_sky sets both.
@@ -110,9 +110,16 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let near = frame.disk_u.y;
     // Without a disk, whose edges are (1, 0) then, there are none.
     let sum = select(0.0, abs(change.x) + abs(change.y), far <= near);
-    let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
+    let steep = u >= far && u <= near && sum > steep_change(u);
     let through = abs(vec2<f32>(u) - frame.disk_u) < vec2<f32>(EDGE_REACH * sum);
     return steep || any(through & (vec2<f32>(sum) >= frame.shown_edges));
+}
+
+// The change of u to the next pixels above which the light of a crossing is not that at the pixel's centre (is_steep).
+fn steep_change(u: f32) -> f32 {
+    let dark_u = 1.0 / abs(frame.signed_isco);
+    let dim = max(DIM_CHANGE * (dark_u - u), LEAST_DIM_CHANGE * dark_u);
+    return min(STEEP_CHANGE * u, select(1e30, dim, u < dark_u && frame.plunge_isco <= 0.0));
 }
 
 // Lookups take sin d / (change of d per pixel) for the distance from the critical curve in pixels, d being the angle

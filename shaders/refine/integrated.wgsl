@@ -86,8 +86,8 @@ fn integrated_record(id: vec2<u32>) -> Record {
         begin_medium(begin.c, begin.state, samples);
     }
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
-        begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,
-        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+        begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0,
+        begin.frequency_ratio * begin.c.nu_local / begin.c.energy, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.has_light {
         // The disk may cover but a part of the sample's cell, and then hides nothing behind it.
         let opaque_u = select(opaque_u_at(), vec2<f32>(1.0, 0.0), whole_plane);
@@ -101,7 +101,6 @@ fn integrated_record(id: vec2<u32>) -> Record {
             if SPINNING {
                 kept_turn = azimuth_turned(begin.c, end.drag - begin.state.drag, end.delay);
             }
-            record.sky_redshift = begin.frequency_ratio / record.energy;
             // Unknown, but in directions that exist.
             record.footprint = footprint_of(record.sky, vec3<f32>(0.0), vec3<f32>(0.0));
             record.footprint.dx = vec2<f32>(1e30);

@@ -312,7 +312,8 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
             var covering = crossing;
             covering.share = seen.x;
             covering.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
-            covering.g *= change_of_g(here.energy, here.angular_momentum, crossing.u, covering.u);
+            covering.g = redshift_beside(here.energy, here.angular_momentum, here.sky_redshift * here.energy,
+                covering.u, vec2<f32>(crossing.u, crossing.g));
             emission += weight * crossing_emission(here, covering, open);
         }
     }

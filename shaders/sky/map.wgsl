@@ -11,11 +11,20 @@
 // (src/gpu/frame/resources/sky_maps.rs), and texels are read one by one.
 override MAP_SAMPLER: bool = false;
 
-// The line across a pixel's patch on which taps are to stand: its direction, sky axes; the patch's axes, rad.
+// The patch of a pixel, and what taps it asks for: the direction of its major axis, sky axes; its axes, rad; the least
+// texel that taps are taken from, rad.
 struct Patch {
     axis: vec3<f32>,
     major: f32,
     minor: f32,
+    least: f32,
+}
+
+// Taps in a row: their number; the pairs of them beside the middle; the distance from each to the next, rad.
+struct Row {
+    count: u32,
+    reach: f32,
+    step: f32,
 }
 
 fn map_patch(footprint: Footprint) -> Patch {
@@ -33,42 +42,43 @@ fn map_patch(footprint: Footprint) -> Patch {
     let axis = (dx * along.x + dy * along.y) / max(length(along) * stretch, 1e-36);
     let major = min(stretch, TAU);
     let spread = clamp(major * (1.0 / WIDE_TAP), MAX_SPREAD, MOST_SPREAD);
-    let minor = max(squeezed, major / sqrt(1.0 + spread * spread));
     if xx + yy < WHOLE_SKY {
-        return Patch(to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y, major, minor);
+        let direction = to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y;
+        return Patch(direction, major, min(squeezed, major), major / spread);
     }
-    return Patch(vec3<f32>(0.0), TAU, 1e30);
+    return Patch(vec3<f32>(0.0), 0.0, 0.0, 1e15);
 }
 
 // Linear Rec. 709 radiance of a map, whose finest level is of `size`, in a pixel at rest. `d`: sky axes.
 fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch) -> vec3<f32> {
     let texel = min(PI / f32(size.y), TAU / f32(size.x));
     let last = firstLeadingBit(size.x);
-    let width = max(patch_.minor, texel);
-    let line = sqrt(max(patch_.major * patch_.major - width * width, 0.0));
-    let level = min(level_of(TAP_TEXEL * width / texel), f32(last));
+    let tap = max(sqrt(texel * texel + patch_.minor * patch_.minor / 3.0), patch_.least);
+    let level = min(level_of(tap / texel), f32(last));
     let finer = u32(level);
     let share = level - f32(finer);
     // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that
     // lavapipe, which runs whatever an `if` leaves out, does not read it for nothing. A sampler reads both itself; its
     // weights have 8 bits, which is less than a step of 255 between any two texels.
     let double = select(0u, 1u, share > 0.0 && !MAP_SAMPLER);
-    let reach = 0.5 * line / width + 0.5;
-    let most = ceil(reach) - 1.0;
-    let count = (1u + 2u * u32(most)) << double;
-    let rho = length(d.xy);
-    let is_straight = line * line * (abs(d.z) + line) < STRAIGHT * width * rho;
+    let line = sqrt(max(patch_.major * patch_.major + 3.0 * (texel * texel - tap * tap), 0.0));
+    let row = row_of_taps(line, tap);
+    let count = row.count << double;
+    let extent = f32(row.count) * row.step;
+    let is_straight = extent * extent * (abs(d.z) + extent) < STRAIGHT * tap * length(d.xy);
     let begin = map_place(d);
-    let step = straight_step(d, patch_.axis) * width;
+    let step = straight_step(d, patch_.axis) * row.step;
+    let first = 0.5 * f32(row.count - 1u);
     var sum = vec3<f32>(0.0);
     var total = 0.0;
     for (var k = 0u; k < count; k += 1u) {
         let coarser = k & double;
-        let i = f32(k >> double) - most;
-        let weight = clamp(reach - abs(i), 0.0, 1.0) * select(1.0 - share, share, coarser == 1u);
+        let i = f32(k >> double) - first;
+        let level_share = select(select(1.0 - share, share, coarser == 1u), 1.0, MAP_SAMPLER);
+        let weight = level_share * clamp(row.reach + 0.5 - abs(i), 0.0, 1.0);
         var place = begin + step * i;
-        if !is_straight && most > 0.0 {
-            let turn = sincos(i * width);
+        if !is_straight && row.count > 1u {
+            let turn = sincos(i * row.step);
             place = map_place(d * turn.y + patch_.axis * turn.x);
         }
         if MAP_SAMPLER {
@@ -79,6 +89,20 @@ fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch)
         total += weight;
     }
     return sum / total;
+}
+
+// Taps with the variance of a line of `length`, taken from texels of `tap`; rad.
+fn row_of_taps(length: f32, tap: f32) -> Row {
+    let short = SHORT_ROW * tap;
+    let longer = sqrt(max(length * length - short * short, 0.0));
+    let reach = max(0.5 / TAP_SPACING * longer / tap, 1.0);
+    let pairs = floor(reach);
+    let outer = pairs + 0.5;
+    let variance = (pairs * (4.0 * pairs * pairs - 1.0) / 12.0 + (reach - pairs) * outer * outer) / reach;
+    if length <= short {
+        return Row(1u, 1.0, 0.0);
+    }
+    return Row(2u * u32(ceil(reach)), reach, longer / sqrt(12.0 * variance));
 }
 
 // The level of texels that are `ratio` times as wide as the finest: exponent and mantissa.

@@ -86,7 +86,7 @@ fn is_steep(orders: u32) -> bool {
     let here = crossing_of_order(traced_pixel, order).x;
     let right = select(here, crossing_of_order(traced_pixel + vec2<u32>(1u, 0u), order).x, traced_joined.y);
     let below = crossing_of_order(traced_pixel + vec2<u32>(0u, 1u), order).x;
-    return abs(right - here) + abs(below - here) > STEEP_CHANGE * here;
+    return abs(right - here) + abs(below - here) > steep_change(here);
 }
 
 fn edge_between(here: u32, pixel: vec2<u32>) -> u32 {

@@ -163,7 +163,7 @@ fn trace_records<T: Send>(
                 let [left, here, right] = across else { continue };
                 let (x, y) = place(column, row);
                 let neighbours = Neighbours::of(&recorder.lens.mapping, x, [left, right, above, below]);
-                let mut record = neighbours.complete(here);
+                let mut record = neighbours.complete(here, &recorder.matter);
                 if let Some(blocks) = &blocks {
                     let pixel = [begin[0] + column as i32 - 1, begin[1] + row as i32 - 1];
                     record.media = blocks.media(pixel, here).0;

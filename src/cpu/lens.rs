@@ -37,7 +37,7 @@ struct LookDirection {
 impl<'a> LensLookup<'a> {
     pub fn new(recorder: Recorder<'a>, tables: Tables<'a>) -> Self {
         let momenta = recorder.lens.observer.frame.momenta();
-        let edges = recorder.disk_u.map(|u| DiskEdges::new(u, recorder.emitters.fading_u()));
+        let edges = recorder.disk_u.map(|u| DiskEdges::new(u, recorder.emitters.fading_u(), &recorder.matter));
         Self { needs: recorder.emitters.needs(), edges, recorder, tables, momenta }
     }
 
@@ -68,6 +68,7 @@ impl<'a> LensLookup<'a> {
         }
         record.energy = energy;
         record.angular_momentum = angular_momentum;
+        record.sky_redshift = seen.ratio / energy;
         if let (true, Some((c, _))) = (self.needs.angles, frame.start(seen.n)) {
             record.polar_momentum = polar_momentum(&c, seen.ratio);
         }
@@ -89,7 +90,8 @@ impl<'a> LensLookup<'a> {
         let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
         let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
         let here = trace(0.0, 0.0);
-        Neighbours::of(&self.recorder.lens.mapping, x, [&left, &right, &above, &below]).complete(&here)
+        Neighbours::of(&self.recorder.lens.mapping, x, [&left, &right, &above, &below])
+            .complete(&here, &self.recorder.matter)
     }
 
     /// Makes the record by tracing the pixel; its footprints, which need not be as exact, come from the table. The
@@ -140,7 +142,7 @@ impl<'a> LensLookup<'a> {
             }
         }
         if let (Some(sky), false) = (found.sky(), record.fate == Fate::Hidden) {
-            escape(record, seen.ratio, sky.direction, steps.map(|step| sky.change(&step)));
+            escape(record, sky.direction, steps.map(|step| sky.change(&step)));
         }
         self.note_edge(record, on_edge, found.curve_distance(&steps));
     }
@@ -193,7 +195,7 @@ impl<'a> LensLookup<'a> {
         let slope = lookup.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
         if lookup.escaped && record.fate != Fate::Hidden {
             let sky = plane.sky(&lookup);
-            escape(record, seen.ratio, sky.direction, turns.map(|turn| sky.change(&turn)));
+            escape(record, sky.direction, turns.map(|turn| sky.change(&turn)));
         }
         self.note_edge(record, on_edge, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
     }
@@ -235,9 +237,8 @@ impl<'a> LensLookup<'a> {
     }
 }
 
-fn escape(record: &mut Record, ratio: f64, direction: DVec3, changes: [DVec3; 2]) {
+fn escape(record: &mut Record, direction: DVec3, changes: [DVec3; 2]) {
     record.fate = Fate::Escaped;
-    record.sky_redshift = ratio / record.energy;
     record.direction = direction;
     record.footprint = changes;
 }

@@ -13,7 +13,7 @@ use crate::scene::observer::Lens;
 use crate::scene::occluder::{BEYOND_ALL, Shown};
 use crate::scene::projection::Mapping;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, polar_momentum};
-use crate::scene::refine::{Edge, is_steep, turning_edge};
+use crate::scene::refine::{Edge, dark_u, is_steep, turning_edge};
 use crate::scene::{Occluder, Scene};
 use glam::DVec3;
 use std::sync::Arc;
@@ -143,9 +143,7 @@ impl<'a> Recorder<'a> {
         record.energy = c.energy / c.nu_local;
         record.angular_momentum = c.angular_momentum / c.nu_local;
         record.polar_momentum = polar_momentum(c, frequency_ratio);
-        if record.fate == Fate::Escaped {
-            record.sky_redshift = frequency_ratio / record.energy;
-        }
+        record.sky_redshift = frequency_ratio / record.energy;
         let Some([outer, inner]) = self.plane_u else { return };
         let within = |u: f64| u >= outer && u <= inner;
         let edge = self.disk_u.map_or(inner, |[_, inner]| inner);
@@ -176,12 +174,13 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// `here` with its footprints and its edge.
-    pub fn complete(&self, here: &Record) -> Record {
+    /// `here` with its footprints and its edge; `matter`: the disk's.
+    pub fn complete(&self, here: &Record, matter: &Matter) -> Record {
         let mut record = here.clone();
         let kinds = [self.left, self.right, self.above, self.below]
             .map(|there| there.map_or(Edge::None, |there| edge_between(here, there)));
-        let steep = if is_steep_between(here, [self.right, self.below]) { Edge::Disk } else { Edge::None };
+        let steep =
+            if is_steep_between(here, [self.right, self.below], dark_u(matter)) { Edge::Disk } else { Edge::None };
         record.edge = kinds.into_iter().fold(steep, Edge::max);
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
@@ -216,10 +215,11 @@ fn edge_between(here: &Record, there: &Record) -> Edge {
 }
 
 /// At the first crossing; where neighbours do not have it, its change is not known but that it is one.
-fn is_steep_between(here: &Record, neighbours: [Option<&Record>; 2]) -> bool {
+fn is_steep_between(here: &Record, neighbours: [Option<&Record>; 2], dark_u: f64) -> bool {
     let Some(first) = here.crossings.first() else { return false };
     let u = |there: &Record| there.crossings.iter().find(|c| c.order == first.order).map_or(0.0, |c| c.u);
-    is_steep(first.u, neighbours.map(|there| there.map_or(0.0, |there| (u(there) - first.u).abs())).iter().sum())
+    let changes = neighbours.map(|there| there.map_or(0.0, |there| (u(there) - first.u).abs()));
+    is_steep(first.u, changes.iter().sum(), dark_u)
 }
 
 /// d(sky direction) from `here` to the next of a row: central where both neighbours escaped, else one-sided.

@@ -70,10 +70,6 @@ impl Plunge {
     }
 }
 
-/// The most that `Matter::change_of_g` says: where g falls to 0, at the photon orbit, f32 tracers cannot tell the
-/// factor.
-pub(crate) const MOST_CHANGE_OF_G: f64 = 1e3;
-
 /// The motion of matter in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matter {
@@ -99,15 +95,21 @@ impl Matter {
         }
     }
 
-    /// The factor by which g of matter at 1/r = `to` differs from that at `from`, for light that has this energy and
-    /// angular momentum where the observer measures frequency 1. It is 1 where the matter plunges at either place, as
-    /// that takes more than these two numbers, and where g is not known.
-    pub fn change_of_g(&self, spin: f64, [energy, angular_momentum]: [f64; 2], from: f64, to: f64) -> f64 {
-        if self.plunge.is_some() && from.max(to) * self.isco > 1.0 {
-            return 1.0;
+    /// g of light that has this energy and angular momentum where the local observer measures frequency 1, from matter
+    /// at 1/r = `u` near its crossing of the plane, which is at 1/r = `crossing` with g = `known`. Where matter plunges
+    /// at either place that is `known`, as it takes more than these two numbers. `ratio`: nu(camera) / nu(local frame).
+    /// NaN inside the photon orbit.
+    pub fn redshift_beside(
+        &self,
+        spin: f64,
+        [energy, angular_momentum, ratio]: [f64; 3],
+        u: f64,
+        [crossing, known]: [f64; 2],
+    ) -> f64 {
+        match self.plunge.is_some() && crossing.max(u) * self.isco > 1.0 {
+            true => known,
+            false => ratio * redshift(spin, u, self.retrograde, energy, angular_momentum, 1.0),
         }
-        let [before, after] = [from, to].map(|u| redshift(spin, u, self.retrograde, energy, angular_momentum, 1.0));
-        if before > 0.0 && after > 0.0 && after < MOST_CHANGE_OF_G * before { after / before } else { 1.0 }
     }
 
     /// Whether it moves as [`Matter::redshift`] has it at 1/r = `u`: there is no matter inside the ISCO that does not

@@ -3,7 +3,8 @@
 //! Shared by both tracers (shaders/refine/cell.wgsl mirrors it); knows no rays and no light.
 //!
 //! Over a cell u is taken to change evenly, as the samples beside it say. A cell is seen in two parts, each with the
-//! light of the mean u of what the disk covers of it, and with g of the ray's light there (`Matter::change_of_g`):
+//! light of the mean u of what the disk covers of it, and with g of the ray's light there, unless
+//! matter plunges (`Matter::redshift_beside`):
 //!
 //! - Cells of strips in two halves, one nearer to the critical curve (`CellCrossing::half`): images of high order
 //!   change much from one strip to the next. Three or four strips may hold all of such an image, and the light of one

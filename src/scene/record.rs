@@ -20,9 +20,10 @@ pub struct Record {
     pub footprint: [DVec3; 2],
     /// `RayTrace::turned`; NaN where it is not known, as of rays that were looked up.
     pub turned: f64,
-    /// nu(camera) / nu(at infinity); NaN unless escaped.
+    /// nu(camera) / nu(at infinity), as the energy has it whether the ray goes there or not; NaN of no ray.
     pub sky_redshift: f64,
-    /// E and L, scaled so that the local frame's observer measures 1.
+    /// E and L, scaled so that the local frame's observer measures 1. `sky_redshift` times `energy` is nu(camera) /
+    /// nu(local frame).
     pub energy: f64,
     pub angular_momentum: f64,
     /// |p_theta| where the ray crosses the plane, which is sqrt(Q), M, of light that has frequency 1 at the camera. At

@@ -18,6 +18,7 @@
 //! over the cell, and the light of the disk found that falls into it ([`super::cell`]).
 
 use super::cell::share_below;
+use crate::physics::plunge::Matter;
 use glam::DVec3;
 
 /// The kind of edge that runs through a pixel.
@@ -75,6 +76,11 @@ pub(crate) const EDGE_REACH: f64 = 0.6;
 /// The relative change of u from pixel to pixel above which the disk's mean light in the pixel is not that at its
 /// centre.
 pub(crate) const STEEP_CHANGE: f64 = 0.1;
+/// The change of u from pixel to pixel above which that is so near the ISCO, in distances from it: the light goes to 0
+/// there as a high power of the distance (Page & Thorne 1974). Where u changes by less than the second number, in u of
+/// the ISCO, all that lies so near is too dim to be seen, below some hundredths of the hottest ring's light.
+pub(crate) const DIM_CHANGE: f64 = 0.33;
+pub(crate) const LEAST_DIM_CHANGE: f64 = 0.012;
 /// The distance to the critical curve, pixels, below which a looked-up pixel is `Curve`.
 pub(crate) const CURVE_REACH: f64 = 0.85;
 /// Turns of the sky direction from pixel to pixel, rad, above which a pixel is `Curve` or `Disk`. Near the curve the
@@ -109,12 +115,14 @@ pub struct DiskEdges {
     /// The change of u to the next pixels below which each does not show, because the disk fades out there: a pixel's
     /// centre tells as much as its quarters.
     pub least: [f64; 2],
+    /// 1/r at which the disk's light goes to 0, that of the ISCO; infinite where matter shines on its way inwards.
+    pub dark_u: f64,
 }
 
 impl DiskEdges {
     /// `fading`: over how much of 1/r the disk fades out at each, 0 where it ends sharply.
-    pub fn new(u: [f64; 2], fading: [f64; 2]) -> Self {
-        Self { u, least: fading.map(|width| FADING_CHANGE * width) }
+    pub fn new(u: [f64; 2], fading: [f64; 2], matter: &Matter) -> Self {
+        Self { u, least: fading.map(|width| FADING_CHANGE * width), dark_u: dark_u(matter) }
     }
 }
 
@@ -123,14 +131,20 @@ impl DiskEdges {
 pub fn near_disk_edge(u: f64, change: [f64; 2], edges: &DiskEdges) -> bool {
     let sum = change[0].abs() + change[1].abs();
     let [far, near] = edges.u;
-    let steep = u >= far && u <= near && is_steep(u, sum);
+    let steep = u >= far && u <= near && is_steep(u, sum, edges.dark_u);
     let shows = |(edge, least): (&f64, &f64)| (u - edge).abs() < EDGE_REACH * sum && sum >= *least;
     steep || edges.u.iter().zip(&edges.least).any(shows)
 }
 
+/// `DiskEdges::dark_u`.
+pub fn dark_u(matter: &Matter) -> f64 {
+    if matter.plunge.is_some() { f64::INFINITY } else { 1.0 / matter.isco }
+}
+
 /// Whether the light of a crossing at `u` that changes by so much to the next pixels is not that at the pixel's centre.
-pub fn is_steep(u: f64, change: f64) -> bool {
-    change > STEEP_CHANGE * u
+pub fn is_steep(u: f64, change: f64, dark_u: f64) -> bool {
+    let dim = u < dark_u && change > (DIM_CHANGE * (dark_u - u)).max(LEAST_DIM_CHANGE * dark_u);
+    dim || change > STEEP_CHANGE * u
 }
 
 /// The edge of a looked-up pixel that lies `curve` pixels from the critical curve and that nothing hides; `turn`: of

@@ -65,7 +65,7 @@ fn random_sight(random: &mut Random) -> Sight {
     let fov = (10.0 / r * random.range(2.0, 6.0)).atan().to_degrees();
     let (sky, disk) = random.pick(&[(true, None), (true, Some(0.0)), (false, Some(0.0)), (false, Some(1.0))]);
     let (elevation, softness) = (random.range(-80.0, 80.0), random.pick(&[0.0, 0.4]));
-    Sight { size: [200, 112], softness, ..sight(spin, r, elevation, fov, sky, disk) }
+    Sight { softness, ..sight(spin, r, elevation, fov, sky, disk) }
 }
 
 impl Sight {

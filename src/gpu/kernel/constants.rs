@@ -21,7 +21,7 @@ use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::observer::Observer;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
-use crate::physics::{blackbody, flow, geodesic, plunge, quadrature};
+use crate::physics::{blackbody, flow, geodesic, quadrature};
 use crate::scene::cell;
 use crate::scene::occluder::{BEYOND_ALL, NO_THING};
 use crate::scene::refine::{self, Edge};
@@ -140,6 +140,7 @@ fn all() -> Vec<(&'static str, Value)> {
         SWIFT_GAMMA: f32 = Observer::SWIFT;
         KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
         KERR_NARROW_REACH: f32 = kerr::NARROW_REACH;
+        KERR_NARROW_REACH_INWARDS: f32 = kerr::NARROW_REACH_INWARDS;
         KERR_DIRECT: u32 = kerr::DIRECT;
         KERR_TOLERANCE: f32 = kerr::TOLERANCE;
         KERR_BEYOND: f32 = kerr::BEYOND_INFINITY;
@@ -181,9 +182,10 @@ fn all() -> Vec<(&'static str, Value)> {
         EVEN_LEVEL: f32 = refine::EVEN_LEVEL;
         EDGE_REACH: f32 = refine::EDGE_REACH;
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
+        DIM_CHANGE: f32 = refine::DIM_CHANGE;
+        LEAST_DIM_CHANGE: f32 = refine::LEAST_DIM_CHANGE;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
         LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
-        MOST_CHANGE_OF_G: f32 = plunge::MOST_CHANGE_OF_G;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
         PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
 
@@ -315,7 +317,8 @@ fn all() -> Vec<(&'static str, Value)> {
         MAX_SPREAD: f32 = filter::MAX_SPREAD;
         MOST_SPREAD: f32 = filter::MOST_SPREAD;
         WIDE_TAP: f32 = filter::WIDE_TAP;
-        TAP_TEXEL: f32 = filter::TAP_TEXEL;
+        TAP_SPACING: f32 = filter::TAP_SPACING;
+        SHORT_ROW: f32 = filter::SHORT_ROW;
         STRAIGHT: f32 = filter::STRAIGHT;
         WHOLE_SKY: f32 = filter::WHOLE_SKY;
         TINY_AXIS: f32 = filter::TINY_AXIS;

@@ -288,15 +288,18 @@ pub fn group() -> Group {
     twins.push(
         twin(
             observer,
-            "redshift_of orbital_redshift change_of_g",
+            "redshift_of orbital_redshift redshift_beside",
             "enter_scene(); let c = begin_local(normalize(in3(1u))).c; out1(redshift_of(c, in1(4u)));
-             out1(change_of_g(c.energy / c.nu_local, c.angular_momentum / c.nu_local, in1(4u), in1(5u)));",
+             out1(redshift_beside(c.energy / c.nu_local, c.angular_momentum / c.nu_local, 0.7, in1(5u), in2(6u)));",
             |i| {
                 let view = Kind::Spinning.push(i);
                 push_look(i, view);
                 let [far, near] = view.scene.emitters().disk_u().expect("a disk");
                 i.even(far, near.min(1.0 / view.scene.disk_isco()));
                 i.even(far, near.min(1.0 / view.scene.disk_isco()));
+                // Its crossing, where matter may plunge, and any g.
+                i.even(far, 2.0 * near);
+                i.even(0.1, 2.0);
             },
             |i, o| {
                 let View { scene, lens, .. } = view(i);
@@ -306,9 +309,9 @@ pub fn group() -> Group {
                 let uncertain =
                     |g: f64, u: f64| g * (c.energy.abs() + u.powf(1.5) * c.angular_momentum.abs()) / c.nu_local;
                 o.near(g, g * uncertain(g, i.x(4)));
-                let ray = [c.energy, c.angular_momentum].map(|v| v / c.nu_local);
-                let change = scene.matter().change_of_g(c.a, ray, i.x(4), i.x(5));
-                o.near(change, change * (uncertain(g, i.x(4)) + uncertain(change * g, i.x(5))));
+                let ray = [c.energy / c.nu_local, c.angular_momentum / c.nu_local, 0.7];
+                let g = scene.matter().redshift_beside(c.a, ray, i.x(5), [i.x(6), i.x(7)]);
+                o.near(g, g * uncertain(g, i.x(5)));
             },
             UNIFORM,
         )

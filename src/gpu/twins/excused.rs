@@ -142,6 +142,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("geodesic/rays", "on_crossing trace_rays", Plumbing("it unpacks and packs what `trace` takes and gives")),
     ("lens/kerr_flags", "place value", Plumbing("it reads a node beside a cell")),
     ("lens/kerr_flags", "fourth patch_of stretch_of sky_is_good crossing_flags pattern_is_good flag_cells", RECORDS),
+    ("lens/kerr_flags", "nearest_u margin_of is_inside_disk", RECORDS),
     ("lens/kerr_nodes", "trace_nodes store_crossing crossing_delay chart_turn delay_over", RECORDS),
     ("lens/kerr_nodes", "on_crossing", Plumbing("a hook that does nothing here")),
     ("lens/kerr_nodes", "store_next", Plumbing("it packs crossings by fours")),

@@ -62,13 +62,13 @@ pub fn group() -> Group {
         ),
         twin(
             record,
-            "near_disk_edge",
+            "near_disk_edge steep_change",
             "enter_scene(); out_flag(near_disk_edge(in1(1u), in2(2u)));",
             push_crossing,
             |i, o| {
                 let emitters = view(i).scene.emitters();
                 let disk_u = emitters.disk_u().expect("a disk").map(|u| f64::from(u as f32));
-                let edges = DiskEdges::new(disk_u, emitters.fading_u());
+                let edges = DiskEdges::new(disk_u, emitters.fading_u(), &view(i).scene.matter());
                 o.flag(near_disk_edge(i.x(1), [i.x(2), i.x(3)], &edges));
             },
             SAME,

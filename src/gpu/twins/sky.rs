@@ -206,7 +206,7 @@ pub fn group() -> Group {
         ),
         twin(
             map_file,
-            "map_light map_patch map_place straight_step level_place map_bilinear",
+            "map_light map_patch row_of_taps map_place straight_step level_place map_bilinear",
             "out3(map_light(map, MAP_SIZE, in3(0u), map_patch(in_footprint())));",
             any_pixel,
             |i, o| {

@@ -229,7 +229,7 @@ impl FrameUniform {
         let [least_profile_u, least_profile] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
         let [least_light, tolerance] = evenness(scene);
         let effects = scene.shown_effects();
-        let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u());
+        let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u(), &scene.matter());
         let (matter, matter_count) = uniforms_of(&emitters.volumes);
         let u = 1.0 / frame.r;
         let CurveLevel { critical: [sin, cos], by_margin, .. } = CurveLevel::new(frame);

@@ -69,15 +69,20 @@ impl Patch<'_> {
         escaped && error <= TOLERANCE * self.vector_stretch(0..SKY).max(1.0)
     }
 
-    fn crossing(&self, channel: usize, order: usize, wanted: &Crossings) -> Hit {
+    /// `reach_inwards`: `Grid::reach_inwards` of the order.
+    fn crossing(&self, channel: usize, order: usize, wanted: &Crossings, reach_inwards: f64) -> Hit {
         let [low, high] = self.range(channel);
         let [near, far] = [wanted.plane_u[1], wanted.plane_u[0]];
-        let [reach, _] = wanted.reach(order);
-        if low > near || high < reach {
+        let reach = wanted.reach(order);
+        if low > reach_inwards || high < reach {
             return Hit::No;
         }
         let inside = |i: usize, j: usize| self.value(channel, i, j).abs() < NO_CROSSING;
-        if !(1..5).all(|i| (1..5).all(|j| inside(i, j))) {
+        let come = (1..5).all(|i| (1..5).all(|j| inside(i, j)));
+        if low > near {
+            return if come { Hit::Possible } else { Hit::No };
+        }
+        if !come {
             return Hit::Poor;
         }
         let middle = 0.5 * (self.u(channel, 2, 2) + self.u(channel, 3, 3));
@@ -140,7 +145,7 @@ impl Grid {
         }
         for order in 0..self.wanted.orders {
             let channel = SKY + order * self.per_crossing();
-            match patch.crossing(channel, order, &self.wanted) {
+            match patch.crossing(channel, order, &self.wanted, self.reach_inwards(order)) {
                 Hit::No => {}
                 Hit::Possible => flags |= 1 << order,
                 Hit::Poor => flags |= 1 << order | POOR_CROSSINGS,

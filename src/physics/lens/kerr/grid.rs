@@ -99,12 +99,15 @@ pub struct Crossings {
 /// Crossings of order 1 and more reach beyond `Crossings::plane_u` by so much: their images are so narrow that 1 / r
 /// goes through all of it within a pixel, and pixels whose own ray crosses farther out show a part of them.
 pub const NARROW_REACH: f64 = 0.3;
+/// They reach inwards by so much, for the same reason: beside a disk that ends far from the photon orbit, as one that
+/// turns against the hole does, samples of a pixel on both sides of an image would seem to have no crossing. Such
+/// crossings need not be exact.
+pub const NARROW_REACH_INWARDS: f64 = 3.0;
 
 impl Crossings {
-    /// The range of 1 / r in which crossings of an order matter.
-    pub fn reach(&self, order: usize) -> [f64; 2] {
-        let [far, near] = self.plane_u;
-        [if order > 0 { NARROW_REACH * far } else { far }, near]
+    /// The least 1 / r at which crossings of an order are told.
+    pub fn reach(&self, order: usize) -> f64 {
+        self.plane_u[0] * if order > 0 { NARROW_REACH } else { 1.0 }
     }
 }
 
@@ -215,6 +218,12 @@ impl Grid {
     /// 1/r beyond which an inward ray of a node is captured.
     pub fn capture_u(&self) -> f64 {
         self.capture_u
+    }
+
+    /// The greatest 1 / r at which crossings of an order are told: not beyond `capture_u` unless the disk is.
+    pub fn reach_inwards(&self, order: usize) -> f64 {
+        let near = self.wanted.plane_u[1];
+        if order > 0 { near.max(self.capture_u.min(NARROW_REACH_INWARDS * near)) } else { near }
     }
 
     /// Epsilon of the coordinate along the critical curve.

@@ -181,8 +181,8 @@ impl KerrLookup<'_> {
         self.crossings_and_beyond().filter(|crossing| self.is_reached(crossing))
     }
 
-    /// The crossings in the disk's range, and those farther out, past infinity as well, of rays beside such; in the
-    /// ray's order.
+    /// The crossings in the disk's range, and of rays beside such those farther out, past infinity as well, and farther
+    /// in; in the ray's order.
     pub fn crossings_and_beyond(&self) -> impl Iterator<Item = Crossing> {
         let possible = (0..self.grid.wanted.orders).filter(|order| self.flags >> order & 1 != 0);
         possible.filter_map(|order| self.crossing_or_beyond(order))
@@ -194,17 +194,18 @@ impl KerrLookup<'_> {
     }
 
     fn is_reached(&self, crossing: &Crossing) -> bool {
-        crossing.image.u >= self.grid.wanted.reach(crossing.order as usize)[0]
+        let wanted = &self.grid.wanted;
+        crossing.image.u >= wanted.reach(crossing.order as usize) && crossing.image.u <= wanted.plane_u[1]
     }
 
-    /// `None`: nearer than the disk's range, or missing.
+    /// `None`: nearer than its range, or missing.
     fn crossing_or_beyond(&self, order: usize) -> Option<Crossing> {
         let wanted = &self.grid.wanted;
         let at = self.interpolate(1 + if wanted.pattern { order } else { order / PER_QUAD });
         let lane = if wanted.pattern { 0 } else { order % PER_QUAD };
         let inverse_side = 1.0 / self.place.side;
         let u = f64::from(at.value[lane]) * inverse_side;
-        if !(u <= wanted.plane_u[1] && f64::from(at.value[lane].abs()) < 0.5 * NO_CROSSING) {
+        if !(u <= self.grid.reach_inwards(order) && f64::from(at.value[lane].abs()) < 0.5 * NO_CROSSING) {
             return None;
         }
         let order = order as u32;

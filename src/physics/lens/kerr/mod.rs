@@ -27,8 +27,8 @@ mod tests;
 
 pub(crate) use grid::{BEYOND_INFINITY, INWARD, LEAVES_DORAN, ROWS_ABOVE, ROWS_BELOW};
 pub use grid::{
-    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, GridPosition, NARROW_REACH, NO_CROSSING, Node,
-    PATTERN_TOLERANCE, POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
+    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, GridPosition, NARROW_REACH, NARROW_REACH_INWARDS,
+    NO_CROSSING, Node, PATTERN_TOLERANCE, POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
 };
 pub use lookup::{Crossing, GridStep, KerrLookup, Sky};
 #[cfg(test)]
