@@ -11,7 +11,9 @@ use crate::video::codec::Codec;
 use bhr::image::{ColourSpace, ImageMut, ImageRef, Layout, PixelFormat};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
-use bhr::scene::{Eye, MOST_CROSSINGS, MOST_OUTPUTS, Made, Output, Projection, RayOutput, RayOutputKind, Region, View};
+use bhr::scene::{
+    Eye, MOST_CROSSINGS, MOST_OUTPUTS, Made, Output, Projection, RayOutput, RayOutputKind, Region, ThinLens, View,
+};
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
@@ -31,13 +33,21 @@ impl Stereo {
     }
 }
 
-/// Motion blur: a frame shows the time from its moment on.
+/// Motion blur and depth of field: a frame shows the time from its moment on, as a lens sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shutter {
     /// The share of a frame's time that the shutter is open.
     open: f64,
-    /// The moments that are rendered.
+    /// The moments that are rendered, each from a place of its own on the lens.
     samples: u32,
+    lens: Option<Lens>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lens {
+    aperture: f64,
+    /// `None`: the hole is in focus.
+    focus: Option<f64>,
 }
 
 pub struct Order {
@@ -184,11 +194,35 @@ fn shutter_of(given: &ArgMatches) -> Result<Option<Shutter>, Ending> {
     if !(0.0..=360.0).contains(&degrees) {
         return Err(Ending::usage(format!("--shutter {degrees}: it must lie in [0, 360]")));
     }
+    let lens = lens_of(given)?;
     let samples = given.get_one::<u32>("shutter-samples").copied();
-    if degrees == 0.0 && samples.is_some() {
-        return Err(Ending::usage("--shutter-samples: it is for motion blur; set --shutter"));
+    if degrees == 0.0 && lens.is_none() {
+        return match samples {
+            Some(_) => Err(Ending::usage(
+                "--shutter-samples: it is for motion blur and depth of field; set --shutter or --aperture",
+            )),
+            None => Ok(None),
+        };
     }
-    Ok((degrees > 0.0).then(|| Shutter { open: degrees / 360.0, samples: samples.unwrap_or(16) }))
+    let samples = samples.unwrap_or(if lens.is_some() { 64 } else { 16 });
+    Ok(Some(Shutter { open: degrees / 360.0, samples, lens }))
+}
+
+fn lens_of(given: &ArgMatches) -> Result<Option<Lens>, Ending> {
+    let aperture = given.get_one::<f64>("aperture").copied().unwrap_or(0.0);
+    let focus = given.get_one::<f64>("focus").copied();
+    if !(aperture >= 0.0 && aperture.is_finite()) {
+        return Err(Ending::usage(format!("--aperture {aperture}: it must be finite and not less than 0")));
+    }
+    if let Some(focus) = focus {
+        if aperture == 0.0 {
+            return Err(Ending::usage("--focus: it is for depth of field; set --aperture"));
+        }
+        if !(focus > 0.0 && focus.is_finite()) {
+            return Err(Ending::usage(format!("--focus {focus}: it must be finite and greater than 0")));
+        }
+    }
+    Ok((aperture > 0.0).then_some(Lens { aperture, focus }))
 }
 
 impl Order {
@@ -224,7 +258,9 @@ impl Order {
         let samples = given.get_one::<u32>("samples").copied();
         let shutter = shutter_of(given)?;
         if shutter.is_some() && (tile.is_some() || stereo.is_some() || !outputs.is_empty()) {
-            return Err(Ending::usage("--shutter: motion blur is for whole frames of one eye without --outputs"));
+            return Err(Ending::usage(
+                "--shutter, --aperture: blurred frames are whole ones of one eye without --outputs",
+            ));
         }
         let transparent = given.get_flag("transparent");
         if transparent && format.is_hdr() {
@@ -439,7 +475,18 @@ impl Order {
             let share = (f64::from(sample) + 0.5) / f64::from(shutter.samples);
             let (region, _) = self.show_at(f64::from(frame) + share * shutter.open, renderer)?;
             if region.is_some() {
-                return Err(Ending::data("--shutter: the scene has a region, and blurred frames are whole"));
+                return Err(Ending::data(
+                    "--shutter, --aperture: the scene has a region, and blurred frames are whole",
+                ));
+            }
+            if let Some(lens) = shutter.lens {
+                let camera = &mut renderer.scene.camera;
+                // The hole's distance along the line of sight, or what there is of it behind the camera.
+                let ahead = -camera.position.dot(camera.forward.normalize());
+                let focus = lens.focus.unwrap_or(if ahead > 0.0 { ahead } else { camera.position.length() });
+                let [width, height] = self.size.map(f64::from);
+                let lens = ThinLens { aperture: lens.aperture, focus, aspect: width / height };
+                *camera = camera.through_lens(&lens, sample, shutter.samples)?;
             }
             let added = recovering(renderer, lost, |renderer| renderer.accumulate(1.0, &mut |_| !signals.has_come()));
             added.map_err(asked)?;

@@ -66,9 +66,10 @@
  * Errors
  *   Every call that can fail returns a BhrStatus; bhr_error_message tells the thread that called what was wrong, with
  *   the value and the limit. bhr_context_error_message and bhr_job_error_message have the last one of a context or a
- *   job. A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters
- *   check their own argument only; impossible combinations (such as a static camera inside the horizon) are
- *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
+ *   job. A failed setter leaves the context as it was; a bhr_camera_* function that fails leaves the camera as it was.
+ *   Whatever else a call fills in is NULL or 0 after a failure. Setters check their own argument only; impossible
+ *   combinations (such as a static camera inside the horizon) are BHR_ERROR_INVALID_STATE when a frame or rays are
+ *   asked for.
  *
  *   Below, errors are named without BHR_ERROR_. Not named each time are INVALID_ARGUMENT for NULL, a wrong struct_size
  *   or size of an array's elements, a number that is not finite or outside its range, and an unknown constant or flag;
@@ -518,17 +519,23 @@ typedef struct BhrCamera {
 /** Fills in the defaults. */
 BHR_NODISCARD BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
 
-/** Sets position, forward (towards target) and up of a camera; touches no context. On failure the camera stays as it
- * was.
+/** Sets position, forward (towards target) and up of a camera; touches no context.
  * Errors: INVALID_ARGUMENT for position (0, 0, 0) or equal to target, up zero or along the line of sight. */
 BHR_NODISCARD BhrStatus bhr_camera_look_at(BhrCamera *camera, const double position[3], const double target[3],
                                            const double up[3]);
 
 /** Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
  * towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
- * Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). On failure the
- * camera stays as it was. */
+ * Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). */
 BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, double elevation);
+
+/** For depth of field: moves a PERSPECTIVE or FRUSTUM camera to place index (from 0) of count (1 to 65536) on a thin
+ * lens of the diameter aperture (>= 0), and makes it a FRUSTUM one in which all at the distance focus (> 0) ahead
+ * stays in place. Frames from all places, each made from the same camera, add up by bhr_accumulate, with equal
+ * weights (docs/colour-and-film.md). Scene lengths; aspect (> 0): the frame's width / height.
+ * Errors: INVALID_ARGUMENT also for another projection, and for a struct_size without tan_up. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_camera_through_lens(BhrCamera *camera, double aperture, double focus, double aspect,
+                                                uint32_t index, uint32_t count);
 
 /** Sets the camera.
  * Errors: INVALID_ARGUMENT also for position (0, 0, 0), and forward or up that are zero or parallel. */
@@ -539,10 +546,9 @@ BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *cam
 
 /** Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
  * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, a VELOCITY one falls freely, which changes its
- * velocity. BhrCamera.transport says how axes go along. The context's own camera stays where it is, and on failure
- * so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that went by: add it
- * to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in STATIC too
- * (docs/cameras.md).
+ * velocity. BhrCamera.transport says how axes go along. The context's own camera stays where it is.
+ * *out_coordinate_time, unless NULL, becomes the time of the camera's chart that went by: add it to the time of
+ * bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in STATIC too (docs/cameras.md).
  * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
  * ends before: in the centre, at r- (1 + 1e-6), or in STATIC at the horizon; UNSUPPORTED for a STATIC camera with
  * PARALLEL axes, and for more than 300,000 steps. */
@@ -569,8 +575,7 @@ BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context, BhrCamera 
 #define BHR_MATRIX_FORWARD_Z 16u
 
 /** Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
- * host's matrices; the rest of it, such as its motion, stays. Touches no context. On failure the camera stays as it
- * was.
+ * host's matrices; the rest of it, such as its motion, stays. Touches no context.
  *
  * view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
  * rotation and a shift, without scale. projection is any perspective one, off-axis, jittered, with reversed or

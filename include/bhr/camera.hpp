@@ -33,6 +33,13 @@ struct Camera : CameraFields {
         return change([&](BhrCamera *it) { return bhr_camera_orbit(it, distance, azimuth, elevation); });
     }
 
+    /// bhr_camera_through_lens: place `index` of `count` on a lens, for depth of field.
+    Result<void> through_lens(double aperture, double focus, double aspect, std::uint32_t index, std::uint32_t count) {
+        return change([&](BhrCamera *it) {
+            return bhr_camera_through_lens(it, aperture, focus, aspect, index, count);
+        });
+    }
+
     /// bhr_camera_from_matrices.
     Result<void> from_matrices(const Matrix &view, const Matrix &matrix, MatrixFlags flags = MatrixFlags::none) {
         return change([&](BhrCamera *it) {

@@ -270,3 +270,20 @@ def test_things_before_the_camera(any_ctx):
             any_ctx.set_occluder(bad)
     any_ctx.set_occluder(None)
     assert np.array_equal(any_ctx.render(32, 18, transparent=True).array, whole)
+
+
+def test_a_lens_has_depth_of_field(ctx):
+    pinhole = ctx.camera
+    on_lens = pinhole.through_lens(1.0, 8.0, 32 / 18, 1, 4)
+    assert on_lens.projection == bhr.Projection.FRUSTUM and not np.allclose(on_lens.position, pinhole.position)
+
+    def places():
+        for i in range(4):
+            ctx.camera = pinhole.through_lens(1.0, 8.0, 32 / 18, i, 4)
+            yield 1.0
+
+    soft = ctx.accumulate(places(), 32, 18).array
+    ctx.camera = pinhole
+    assert (soft != ctx.render(32, 18).array).any()
+    with pytest.raises(bhr.Error, match="focus is 0"):
+        pinhole.through_lens(1.0, 0.0, 1.5, 0, 1)

@@ -33,6 +33,12 @@ struct KerrLens {
 // those four.
 override PATTERN: bool = false;
 
+// The greatest 1/r at which crossings are told (Grid::reach_inwards of src/physics/lens/kerr/grid.rs); `near`: the
+// greatest of those that pixels beside the disk look for.
+fn kerr_reach_inwards(near: f32) -> f32 {
+    return max(near, min(lens.capture_u, KERR_NARROW_REACH_INWARDS * near));
+}
+
 // The part of a delay that tables leave out, M: divergent_delay of src/physics/lens/kerr/grid.rs.
 fn divergent_delay(u: f32, u_observer: f32) -> f32 {
     return 1.0 / u_observer + 1.0 / u - 2.0 * log(u / u_observer);

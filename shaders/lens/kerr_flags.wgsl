@@ -126,8 +126,7 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let near = nearest_u();
     let far = frame.plane_u.x / 1.5;
     let reach = far * select(1.0, KERR_NARROW_REACH, order > 0u);
-    let inwards = max(near, min(lens.capture_u, KERR_NARROW_REACH_INWARDS * near));
-    let reach_inwards = select(near, inwards, order > 0u);
+    let reach_inwards = select(near, kerr_reach_inwards(near), order > 0u);
     if near < far || p.low[k] - margin > reach_inwards || p.high[k] + margin < reach {
         return 0u;
     }

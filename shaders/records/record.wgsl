@@ -46,7 +46,7 @@ struct Record {
     polar_momentum: f32,
     // 1/r of the first crossing of the plane, even where nothing shines; 0 without one. Set for VIEW_METRIC only.
     plane_u: f32,
-    // nu(camera) / nu(at infinity), whether the ray goes there or not; 0 of captured rays that were traced before.
+    // nu(camera) / nu(at infinity), whether the ray goes there or not; 0 of captured rays in traced/record.wgsl.
     sky_redshift: f32,
     // The direction in which the ray escapes, a unit vector in chart axes (z along the spin), and its footprint;
     // with_sky sets both.
@@ -96,6 +96,33 @@ struct Crossing {
 fn crossing_place(crossing: Crossing) -> vec3<f32> {
     let turn = sincos(crossing.place.azimuth);
     return vec3<f32>(turn.y, turn.x, 0.0) / crossing.u;
+}
+
+// The crossing with place and footprint of the light that leaves about 1/r = u (Crossing::lit_about of
+// src/emit/crossing.rs).
+fn lit_about(crossing: Crossing, u: f32, extent: f32) -> Crossing {
+    let dx = crossing.dx;
+    let dy = crossing.dy;
+    let ln_r = -log(u);
+    // Sides that are not known, of 1e30, change nothing and stay so.
+    let steps = min(abs(vec2<f32>(dx.ln_r, dy.ln_r)), vec2<f32>(UNKNOWN_STEP));
+    let steepness = dot(steps, steps);
+    let known = steepness > 0.0 && max(steps.x, steps.y) < UNKNOWN_STEP;
+    if !known {
+        var there = crossing;
+        there.place.ln_r = ln_r;
+        return there;
+    }
+    let per_step = 1.0 / steepness;
+    let way = per_step * (ln_r - crossing.place.ln_r);
+    let less = per_step * (extent - 1.0);
+    let azimuth = dx.ln_r * dx.azimuth + dy.ln_r * dy.azimuth;
+    let delay = dx.ln_r * dx.delay + dy.ln_r * dy.delay;
+    var lit = crossing;
+    lit.place = EmissionPoint(ln_r, crossing.place.azimuth + way * azimuth, crossing.place.delay + way * delay);
+    lit.dx = EmissionPoint(extent * dx.ln_r, dx.azimuth + less * azimuth * dx.ln_r, dx.delay + less * delay * dx.ln_r);
+    lit.dy = EmissionPoint(extent * dy.ln_r, dy.azimuth + less * azimuth * dy.ln_r, dy.delay + less * delay * dy.ln_r);
+    return lit;
 }
 
 // Its straight distance from the camera, M.

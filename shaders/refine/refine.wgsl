@@ -295,6 +295,8 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
         crossing_in(beside.w, order));
     let cell = cell_crossing(crossing.u, others);
     var emission = vec4<f32>(0.0);
+    // Sums of light, and of it times the difference of u from the crossing's, and that squared.
+    var lit = vec3<f32>(0.0);
     for (var i = 0u; i < not_inlined(2u); i += 1u) {
         var part = cell;
         var weight = 1.0;
@@ -314,10 +316,31 @@ fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32> {
             covering.u = clamp(seen.y, frame.disk_u.x, frame.disk_u.y);
             covering.g = redshift_beside(here.energy, here.angular_momentum, here.sky_redshift * here.energy,
                 covering.u, vec2<f32>(crossing.u, crossing.g));
-            emission += weight * crossing_emission(here, covering, open);
+            let light = weight * crossing_emission(here, covering, open);
+            emission += light;
+            let range = levels.y - levels.x;
+            let spread2 = min(range * range, dot(part.du, part.du));
+            let off = covering.u - crossing.u;
+            lit += (light.x + light.y + light.z) * vec3<f32>(1.0, off, off * off + spread2 / 12.0);
         }
     }
+    let mean = lit.yz / lit.x;
+    let spread2 = dot(cell.du, cell.du);
+    let extent = sqrt(12.0 * max(mean.y - mean.x * mean.x, 0.0) / spread2);
+    let known = lit.x > 0.0 && spread2 > 0.0;
+    lit_range = select(vec2<f32>(crossing.u, 1.0), vec2<f32>(crossing.u + mean.x, min(extent, 1.0)), known);
     return emission;
+}
+
+// 1/r about which the light of the crossing shaded last leaves, and the share that it has of the change of 1/r over the
+// cell.
+var<private> lit_range: vec2<f32>;
+
+fn lit_crossing(crossing: Crossing) -> Crossing {
+    if FOOTPRINTS {
+        return lit_about(crossing, lit_range.x, lit_range.y);
+    }
+    return crossing;
 }
 
 // How much u of the crossing of `order` may change between the samples of a pixel.

@@ -22,6 +22,7 @@
 #requires fn more_crossings() -> bool
 #requires fn seen_crossing() -> Crossing
 #requires fn seen_emission(here: Record, crossing: Crossing, open: f32) -> vec4<f32>
+#requires fn lit_crossing(crossing: Crossing) -> Crossing
 #requires fn seen_sky(here: Record) -> Record
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -94,7 +95,8 @@ var<private> seen_through: f32;
 var<private> seen_turn: f32;
 
 // Light and alpha of a record. seen_crossing gives next_crossing, seen_emission the crossing_emission of what the disk
-// covers there, and seen_sky the record with its sky.
+// covers there, lit_crossing after that the crossing where most of its light comes from, and seen_sky the record with
+// its sky.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
@@ -116,7 +118,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
             emission = vec4<f32>(0.0);
         }
         if emission.w > 0.0 {
-            light += structure_at_crossing(crossing) * emission.xyz;
+            light += structure_at_crossing(lit_crossing(crossing)) * emission.xyz;
         }
         open *= 1.0 - emission.w;
         // Behind an opaque crossing no other is looked for. If the loop found at its begin that there is none, lavapipe

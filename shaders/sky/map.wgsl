@@ -134,7 +134,8 @@ fn level_place(finest: vec2<u32>, level: u32) -> vec2<i32> {
 fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u32) -> vec3<f32> {
     let size = vec2<i32>(max(finest >> vec2<u32>(level), vec2<u32>(1u)));
     let begin = level_place(finest, level);
-    // Straight lines of taps go at most a small part of a turn beyond the seam.
+    // Straight lines of taps go at most a small part of a turn beyond the seam, but at the poles, where rows are
+    // constant.
     let place = vec2<f32>(uv.x - floor(uv.x), uv.y) * vec2<f32>(size) - 0.5;
     let corner = floor(place);
     let share = place - corner;

@@ -9,8 +9,9 @@ use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Number, Result};
-use crate::scene::{Camera, Eye, Frustum, Motion, Projection, Transport};
+use crate::scene::{Camera, Eye, Frustum, Motion, Projection, ThinLens, Transport};
 use glam::DVec3;
+use std::mem::offset_of;
 
 /// The lens. Camera axes: right = forward x up, then up = right x forward.
 pub type BhrProjection = i32;
@@ -237,8 +238,7 @@ unsafe fn aim(camera: *mut BhrCamera, position: DVec3, forward: DVec3, up: DVec3
     }
 }
 
-/// Sets position, forward (towards target) and up of a camera; touches no context. On failure the camera stays as it
-/// was.
+/// Sets position, forward (towards target) and up of a camera; touches no context.
 /// Errors: INVALID_ARGUMENT for position (0, 0, 0) or equal to target, up zero or along the line of sight.
 /// cbindgen:ptrs-as-arrays=[[position;3], [target;3], [up;3]]
 #[unsafe(no_mangle)]
@@ -278,8 +278,7 @@ pub(super) fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec
 
 /// Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
 /// towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
-/// Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). On failure the
-/// camera stays as it was.
+/// Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_orbit(
     camera: *mut BhrCamera,
@@ -292,6 +291,35 @@ pub unsafe extern "C" fn bhr_camera_orbit(
         versioned::caller_size(camera, "camera")?;
         let (position, up) = orbit(distance, azimuth, elevation)?;
         aim(camera, position, -position, up)
+    })
+}
+
+/// For depth of field: moves a PERSPECTIVE or FRUSTUM camera to place index (from 0) of count (1 to 65536) on a thin
+/// lens of the diameter aperture (>= 0), and makes it a FRUSTUM one in which all at the distance focus (> 0) ahead
+/// stays in place. Frames from all places, each made from the same camera, add up by bhr_accumulate, with equal
+/// weights (docs/colour-and-film.md). Scene lengths; aspect (> 0): the frame's width / height.
+/// Errors: INVALID_ARGUMENT also for another projection, and for a struct_size without tan_up. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_through_lens(
+    camera: *mut BhrCamera,
+    aperture: f64,
+    focus: f64,
+    aspect: f64,
+    index: u32,
+    count: u32,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_camera_through_lens", || unsafe {
+        let size = versioned::caller_size(camera, "camera")?;
+        let least = offset_of!(BhrCamera, tan_up) + size_of::<f64>();
+        if size < least {
+            return Err(Error::argument(format!(
+                "camera struct_size is {size}; a lens needs tan_up, so at least {least}"
+            )));
+        }
+        let before: Camera = versioned::read(camera, "camera")?.try_into()?;
+        let after = before.through_lens(&ThinLens { aperture, focus, aspect }, index, count)?;
+        versioned::write(camera, "camera", &after.into())
     })
 }
 
@@ -320,10 +348,9 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
 
 /// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, of any sign): a
 /// STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, a VELOCITY one falls freely, which changes its
-/// velocity. BhrCamera.transport says how axes go along. The context's own camera stays where it is, and on failure
-/// so does this one. *out_coordinate_time, unless NULL, becomes the time of the camera's chart that went by: add it
-/// to the time of bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in STATIC too
-/// (docs/cameras.md).
+/// velocity. BhrCamera.transport says how axes go along. The context's own camera stays where it is.
+/// *out_coordinate_time, unless NULL, becomes the time of the camera's chart that went by: add it to the time of
+/// bhr_set_time. In chart RAIN a fall is seamless through the horizon, without spin in STATIC too (docs/cameras.md).
 /// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible, and for a fall that
 /// ends before: in the centre, at r- (1 + 1e-6), or in STATIC at the horizon; UNSUPPORTED for a STATIC camera with
 /// PARALLEL axes, and for more than 300,000 steps.

@@ -49,8 +49,7 @@ unsafe fn read_matrix(pointer: *const f64, name: &str, flags: u32) -> Result<DMa
 }
 
 /// Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
-/// host's matrices; the rest of it, such as its motion, stays. Touches no context. On failure the camera stays as it
-/// was.
+/// host's matrices; the rest of it, such as its motion, stays. Touches no context.
 ///
 /// view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
 /// rotation and a shift, without scale. projection is any perspective one, off-axis, jittered, with reversed or

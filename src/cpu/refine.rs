@@ -45,6 +45,34 @@ struct Place {
     first_half: Option<f64>,
 }
 
+/// Where the light of a cell comes from: sums over its parts of the light, of it times the difference of u from the
+/// crossing's, and of it times that squared.
+#[derive(Default)]
+struct Lit {
+    light: f64,
+    off: f64,
+    off2: f64,
+}
+
+impl Lit {
+    /// Light about a difference of u, of which it has a twelfth of `spread2` for a variance.
+    fn add(&mut self, light: f64, off: f64, spread2: f64) {
+        self.light += light;
+        self.off += light * off;
+        self.off2 += light * (off * off + spread2 / 12.0);
+    }
+
+    /// The crossing as the disk's structure is to be seen there: that of the places that the light comes from, which
+    /// may be few of those in the cell. `spread2`: twelve times the variance of u over the cell.
+    fn crossing(&self, crossing: &Crossing, spread2: f64) -> Crossing {
+        if self.light <= 0.0 || spread2 <= 0.0 {
+            return *crossing;
+        }
+        let [off, off2] = [self.off, self.off2].map(|sum| sum / self.light);
+        crossing.lit_about(crossing.u + off, (12.0 * (off2 - off * off).max(0.0) / spread2).sqrt().min(1.0))
+    }
+}
+
 /// The records of a pixel's samples, and the samples beside each.
 struct Samples<'a> {
     records: &'a [Record],
@@ -132,12 +160,14 @@ impl<'a> Refiner<'a> {
             let Some(record) = samples.completed(index) else { continue };
             let light = shader.shade_record_with(&record, x, y, |crossing, open| {
                 let mut emission = Emission { light: [0.0; 3], opacity: 0.0 };
-                for (part, weight) in self.seen_parts(samples, index, crossing, first_half) {
+                let mut lit = Lit::default();
+                for (part, weight, spread2) in self.seen_parts(samples, index, crossing, first_half) {
                     let seen = shader.emission(&record, &part, open);
                     (0..3).for_each(|c| emission.light[c] += weight * seen.light[c]);
                     emission.opacity += weight * seen.opacity;
+                    lit.add(weight * seen.light.iter().sum::<f64>(), part.u - crossing.u, spread2);
                 }
-                emission
+                (emission, lit.crossing(crossing, samples.over_cell(index, crossing).spread2()))
             });
             (0..4).for_each(|c| sum[c] += weight * light[c]);
             total += weight;
@@ -146,15 +176,15 @@ impl<'a> Refiner<'a> {
     }
 
     /// A crossing of sample `index` in the two parts of its cell in which it is seen, as crossings of their own: the
-    /// halves of a strip's cell, of which the first is `first_half` of it, or two ranges of u; with a weight of each.
-    /// Those that the disk does not cover are left out.
+    /// halves of a strip's cell, of which the first is `first_half` of it, or two ranges of u; with a weight of each,
+    /// and its `spread2`. Those that the disk does not cover are left out.
     fn seen_parts(
         &self,
         samples: &Samples<'_>,
         index: u32,
         crossing: &Crossing,
         first_half: Option<f64>,
-    ) -> ArrayVec<(Crossing, f64), 2> {
+    ) -> ArrayVec<(Crossing, f64, f64), 2> {
         let (Some(disk_u), Some(record)) = (self.disk_u, samples.records.get(index as usize)) else {
             return ArrayVec::new();
         };
@@ -175,7 +205,7 @@ impl<'a> Refiner<'a> {
             let Covered { share, u } = part.covered(levels)?;
             let u = u.max(disk_u[0]).min(disk_u[1]);
             let g = self.matter.redshift_beside(self.spin, ray, u, [crossing.u, crossing.g]);
-            Some((Crossing { u, g, share, ..*crossing }, weight))
+            Some((Crossing { u, g, share, ..*crossing }, weight, part.spread2_between(levels)))
         });
         seen.collect()
     }
@@ -371,8 +401,8 @@ mod tests {
         counts.map(|count| f64::from(count) / f64::from(region.full_width * region.full_height))
     }
 
-    /// An edge that fades over many pixels needs no more rays than the rest of the disk, but where the disk's light goes
-    /// to 0 at the ISCO, and what lies behind the disk's opaque part needs none.
+    /// An edge that fades over many pixels needs no more rays than the rest of the disk, but where the disk's light
+    /// goes to 0 at the ISCO, and what lies behind the disk's opaque part needs none.
     #[test]
     fn soft_edges_are_refined_in_thin_images_only() {
         for spin in [0.0, 0.9] {

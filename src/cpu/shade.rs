@@ -53,7 +53,7 @@ impl<'a> Shader<'a> {
     /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
     /// shows nothing.
     pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
-        self.shade_record_with(here, x, y, |crossing, open| self.emission(here, crossing, open))
+        self.shade_record_with(here, x, y, |crossing, open| (self.emission(here, crossing, open), *crossing))
     }
 
     /// The light of a record, each of whose crossings adds what `seen_emission` gives in the place of `emission`.
@@ -62,7 +62,7 @@ impl<'a> Shader<'a> {
         here: &Record,
         x: f64,
         y: f64,
-        seen_emission: impl Fn(&Crossing, f64) -> Emission,
+        seen_emission: impl Fn(&Crossing, f64) -> (Emission, Crossing),
     ) -> [f64; 4] {
         match (self.scene.view, self.lens.mapping.has_look_direction(x, y)) {
             (View::Light, true) => self.pixel_light(here, self.shown(x, y), seen_emission),
@@ -85,7 +85,7 @@ impl<'a> Shader<'a> {
         &self,
         here: &Record,
         shown: Option<Shown>,
-        seen_emission: impl Fn(&Crossing, f64) -> Emission,
+        seen_emission: impl Fn(&Crossing, f64) -> (Emission, Crossing),
     ) -> [f64; 4] {
         let eye = self.lens.place.e_r * self.lens.place.r;
         let mut light = [0.0; 3];
@@ -105,9 +105,9 @@ impl<'a> Shader<'a> {
             if shown.is_some_and(|shown| !shown.shows(crossing, eye)) {
                 continue;
             }
-            let emission = seen_emission(crossing, open);
+            let (emission, lit) = seen_emission(crossing, open);
             if emission.opacity > 0.0 {
-                let structure = self.plane.structure(crossing);
+                let structure = self.plane.structure(&lit);
                 (0..3).for_each(|c| light[c] += structure * emission.light[c]);
                 open *= 1.0 - emission.opacity;
             }

@@ -29,6 +29,37 @@ pub struct Crossing {
     pub share: f64,
 }
 
+/// Changes of ln r from here on are not known.
+pub(crate) const UNKNOWN_STEP: f64 = 1e15;
+
+impl Crossing {
+    /// The crossing with place and footprint of the light that leaves about 1/r = `u`, within the pixel or the cell of
+    /// a sample: as far along the steepest change of ln r as this takes, with the azimuth and delay that the way there
+    /// has. `extent`: the share that this light has of the change of 1/r over the pixel or cell.
+    pub fn lit_about(&self, u: f64, extent: f64) -> Self {
+        let [dx, dy] = self.footprint;
+        let ln_r = -u.ln();
+        let steepness = dx.ln_r * dx.ln_r + dy.ln_r * dy.ln_r;
+        let known = steepness > 0.0 && dx.ln_r.abs().max(dy.ln_r.abs()) < UNKNOWN_STEP;
+        if !known {
+            return Self { place: EmissionPoint { ln_r, ..self.place }, ..*self };
+        }
+        // By steps of (dx.ln_r, dy.ln_r): the way to the place, and what the footprint loses along it.
+        let per_step = 1.0 / steepness;
+        let (way, less) = (per_step * (ln_r - self.place.ln_r), per_step * (extent - 1.0));
+        let along = |x: f64, y: f64| dx.ln_r * x + dy.ln_r * y;
+        let [azimuth, delay] = [along(dx.azimuth, dy.azimuth), along(dx.delay, dy.delay)];
+        let shorter = |step: EmissionPoint| EmissionPoint {
+            ln_r: extent * step.ln_r,
+            azimuth: step.azimuth + less * azimuth * step.ln_r,
+            delay: step.delay + less * delay * step.ln_r,
+        };
+        let place =
+            EmissionPoint { ln_r, azimuth: self.place.azimuth + way * azimuth, delay: self.place.delay + way * delay };
+        Self { place, footprint: [shorter(dx), shorter(dy)], ..*self }
+    }
+}
+
 /// How the effects let frequency shifts show. Both numbers are the redshift factor g with all effects on, and above 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift {

@@ -3,8 +3,8 @@
 //! Shared by both tracers (shaders/refine/cell.wgsl mirrors it); knows no rays and no light.
 //!
 //! Over a cell u is taken to change evenly, as the samples beside it say. A cell is seen in two parts, each with the
-//! light of the mean u of what the disk covers of it, and with g of the ray's light there, unless
-//! matter plunges (`Matter::redshift_beside`):
+//! light of the mean u of what the disk covers of it, and with g of the ray's light there, unless matter
+//! plunges (`Matter::redshift_beside`):
 //!
 //! - Cells of strips in two halves, one nearer to the critical curve (`CellCrossing::half`): images of high order
 //!   change much from one strip to the next. Three or four strips may hold all of such an image, and the light of one
@@ -41,6 +41,17 @@ impl CellCrossing {
     pub fn half(&self, side: f64) -> Self {
         let [along, across] = self.du;
         Self { u: self.u + 0.25 * side * across, du: [along, 0.5 * across] }
+    }
+
+    /// Twelve times the variance of u over the cell.
+    pub fn spread2(&self) -> f64 {
+        self.du[0] * self.du[0] + self.du[1] * self.du[1]
+    }
+
+    /// Twelve times the variance of u over the part of the cell between `levels`, nearly: as if all of it were alike
+    /// between them, and not more than over the cell.
+    pub fn spread2_between(&self, [low, high]: [f64; 2]) -> f64 {
+        ((high - low) * (high - low)).min(self.spread2())
     }
 
     /// Between which differences from `u` the cell lies on the disk, whose edges are at `disk_u`; the first is above
@@ -120,6 +131,33 @@ mod tests {
         let below = |(i, j): (u32, u32)| slope[0] * place(i) + slope[1] * place(j) <= level;
         let points = (0..N).flat_map(|i| (0..N).map(move |j| (i, j)));
         points.filter(|at| below(*at)).count() as f64 / f64::from(N * N)
+    }
+
+    /// Where all of a cell lies on the disk, its parts have its variance, so that the footprint of an evenly lit cell
+    /// stays as it is.
+    #[test]
+    fn parts_have_the_spread_of_the_cell() {
+        let disk_u = [0.05, 0.15];
+        for du in [[0.0, 0.02], [0.004, 0.02], [0.01, -0.02], [0.02, 0.02]] {
+            let cell = CellCrossing { u: 0.1, du };
+            let halves = [-1.0, 1.0].map(|side| {
+                let half = cell.half(side);
+                let levels = half.levels_on(disk_u);
+                (half.covered(levels).unwrap().u - cell.u, half.spread2_between(levels))
+            });
+            let [low, high] = cell.levels_on(disk_u);
+            let ranges = [[low, 0.0], [0.0, high]]
+                .map(|levels| (cell.covered(levels).unwrap().u - cell.u, cell.spread2_between(levels)));
+            let of = |parts: [(f64, f64); 2]| {
+                let spread2: f64 = parts.iter().map(|(off, spread2)| 0.5 * (12.0 * off * off + spread2)).sum();
+                (spread2 / cell.spread2()).sqrt()
+            };
+            assert!((of(halves) - 1.0).abs() < 1e-9, "{du:?}: {}", of(halves));
+            assert!(of(ranges) > 0.999 && of(ranges) < 1.1, "{du:?}: {}", of(ranges));
+        }
+        // A range of a tenth of the cell.
+        let cell = CellCrossing { u: 0.1, du: [0.0, 0.1] };
+        assert!((cell.spread2_between([0.01, 0.02]) - 1e-4).abs() < 1e-12);
     }
 
     #[test]

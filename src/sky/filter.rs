@@ -234,7 +234,8 @@ fn arctan2(y: [f64; 2], x: [f64; 2]) -> [f64; 2] {
 impl Level {
     /// Around the sky in u; at the poles the outermost rows, which are constant, go on.
     fn bilinear(&self, sum: &mut Sum, place: DVec2, weight: f32) {
-        // Straight lines of taps go at most a small part of a turn beyond the seam.
+        // Straight lines of taps go at most a small part of a turn beyond the seam, but at the poles, where rows are
+        // constant.
         let u = if place.x < 0.0 { place.x + 1.0 } else { place.x };
         let u = if u >= 1.0 { u - 1.0 } else { u };
         let [width, height] = self.size;

@@ -202,7 +202,26 @@ static void camera_helpers(void) {
         CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "azimuth", bhr_camera_orbit(&camera, 30.0, NOT_FINITE[i], 0.0));
         CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "elevation", bhr_camera_orbit(&camera, 30.0, 0.0, NOT_FINITE[i]));
     }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_through_lens(NULL, 1.0, 10.0, 1.5, 0, 4));
+    for (size_t i = 0; i < COUNT_OF(bad_distance); i++) {
+        const double bad = bad_distance[i];
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "focus", bhr_camera_through_lens(&camera, 1.0, bad, 1.5, 0, 4));
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "aspect", bhr_camera_through_lens(&camera, 1.0, 10.0, bad, 0, 4));
+        if (bad != 0.0) {
+            CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "aperture", bhr_camera_through_lens(&camera, bad, 10.0, 1.5, 0, 4));
+        }
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "index", bhr_camera_through_lens(&camera, 1.0, 10.0, 1.5, 4, 4));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "count", bhr_camera_through_lens(&camera, 1.0, 10.0, 1.5, 0, 0));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "65536", bhr_camera_through_lens(&camera, 1.0, 10.0, 1.5, 0, 65537));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "tan", bhr_camera_through_lens(&camera, 1.0, 1e-12, 1.5, 0, 4));
     CHECK(memcmp(&camera, &before, sizeof camera) == 0, "a failed helper changed the camera");
+    camera.projection = BHR_PROJECTION_EQUIRECT;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "projection", bhr_camera_through_lens(&camera, 1.0, 10.0, 1.5, 0, 4));
+    camera.projection = BHR_PROJECTION_PERSPECTIVE;
+    /* A host of before FRUSTUM has no place for its tangents. */
+    camera.struct_size = offsetof(BhrCamera, tan_up);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "tan_up", bhr_camera_through_lens(&camera, 1.0, 10.0, 1.5, 0, 4));
     camera.struct_size = 8;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_orbit(&camera, 30.0, 0.0, 0.0));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_look_at(&camera, at, origin, up));

@@ -93,6 +93,9 @@ static void scene() {
     EXPECT(camera.look_at({20.0, 0.0, 1.0}, {0.0, 0.0, 0.0}) && camera.position[0] == 20.0);
     EXPECT(!camera.orbit(-1.0, 0.0, 0.0) && camera.position[0] == 20.0);
     EXPECT(camera.orbit(20.0, 0.0, 0.1));
+    bhr::Camera on_lens = camera;
+    EXPECT(on_lens.through_lens(0.5, 20.0, 1.5, 1, 16) && on_lens.projection == bhr::Projection::frustum);
+    EXPECT(!on_lens.through_lens(0.5, 20.0, 1.5, 16, 16));
     const auto flags = bhr::MatrixFlags::zero_to_one | bhr::MatrixFlags::reversed;
     const bhr::CameraMatrices seen_by = camera.matrices(16, 9, 0.1, INFINITY, flags).value();
     bhr::Camera again;

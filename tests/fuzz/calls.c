@@ -222,6 +222,7 @@ static void scene_call(BhrContext *context) {
     case 4:
         bhr_camera_init(&camera, sizeof camera);
         check(bhr_camera_orbit(&camera, number(), number(), number()));
+        check(bhr_camera_through_lens(&camera, number(), number(), number(), byte() % 20, byte() % 20));
         check(bhr_camera_matrices(&camera, count(), count(), number(), number(), byte(), gamma, gamma + 16));
         check(bhr_camera_from_matrices(&camera, gamma, gamma + 16, byte()));
         check(bhr_set_camera(context, &camera));

@@ -7,7 +7,7 @@ use crate::random::runs_all;
 use bhr::error::{ErrorKind, Result};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
-use bhr::scene::{AutoExposure, Disk, Film, Scene};
+use bhr::scene::{AutoExposure, Disk, Film, Scene, ThinLens};
 
 type Change = fn(&mut Scene);
 
@@ -68,6 +68,38 @@ fn equal_frames_are_the_frame() {
         let codes = |bytes: &[u8]| bytes.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b)).collect::<Vec<_>>();
         let off = codes(&floats).into_iter().zip(codes(&at_once)).filter(|(a, b)| a.abs_diff(*b) > 1).count();
         assert_eq!(off, 0, "{tracer}: halves differ");
+    }
+}
+
+/// A lens that has the hole in focus blurs its picture little; one that has nearer things in focus blurs it as much as
+/// that circle of confusion does, however many places it is seen from.
+#[test]
+fn a_lens_blurs_what_is_not_in_focus() {
+    let floats =
+        |bytes: &[u8]| bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect::<Vec<_>>();
+    for (tracer, mut renderer) in both() {
+        (renderer.scene.sky.flags, renderer.scene.film.bloom) = (0, 0.0);
+        let camera = renderer.scene.camera;
+        let pinhole = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, false));
+        let mut through = |focus: f64, places: u32| {
+            let lens = ThinLens { aperture: 1.0, focus, aspect: 16.0 / 9.0 };
+            renderer.begin_accumulation(SIZE, false).unwrap();
+            for index in 0..places {
+                renderer.scene.camera = camera.through_lens(&lens, index, places).unwrap();
+                renderer.accumulate(1.0, &mut |_| true).unwrap();
+            }
+            floats(&end(&mut renderer, PixelFormat::Rgba32F, SIZE, false).unwrap())
+        };
+        let rms = |a: &[f64], b: &[f64]| {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+            (squares / a.len() as f64).sqrt()
+        };
+        let [sharp, soft] = [camera.position.length(), 6.0].map(|focus| through(focus, 32));
+        let again = through(6.0, 64);
+        let [off, blurred, noise] = [rms(&sharp, &pinhole), rms(&soft, &pinhole), rms(&soft, &again)];
+        println!("{tracer}: in focus {off:.5}, out of focus {blurred:.5}, more places {noise:.5}");
+        assert!(off < 0.35 * blurred && blurred > 0.02, "{tracer}: {off} {blurred}");
+        assert!(noise < 0.15 * blurred, "{tracer}: {noise} {blurred}");
     }
 }
 

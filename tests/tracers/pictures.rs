@@ -9,7 +9,8 @@ use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{
-    Camera, EffectStrengths, Effects, EmissionLaw, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View,
+    Camera, EffectStrengths, Effects, EmissionLaw, KerrThreshold, LensTables, Lensing, Motion, Preset, Region, Scene,
+    Sky, View,
 };
 use glam::DVec3;
 use serde_json::Value;
@@ -258,6 +259,30 @@ fn light_is_finite_in_every_pixel() {
             assert_eq!(bad, 0, "{name} on {tracer}");
             assert!(values.chunks_exact(4).all(|p| p[3] == 1.0), "{name} on {tracer}: alpha");
         }
+    }
+}
+
+/// Pictures of TEACHING, which has no exposure of its own for each hole: their mean light as displays show it.
+#[test]
+fn teaching_is_about_as_bright_at_every_spin() {
+    let mut renderer = cpu();
+    for elevation in [6.0, 20.0, 60.0] {
+        let mut range = [f64::INFINITY, 0.0_f64];
+        for spin in [0.0, 0.5, 0.9, 0.998] {
+            renderer.scene = Scene::default();
+            Preset::Teaching.apply(&mut renderer.scene);
+            renderer.scene.hole.spin = spin;
+            renderer.scene.camera = camera(30.0, 90.0 - elevation, 45.0, Motion::Static);
+            let shown = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [160, 90], None, false));
+            let light = shown.chunks_exact(4).map(|p| {
+                let [red, green, blue] = [p[0], p[1], p[2]].map(|v| f64::from(v.min(1.0)));
+                0.2126 * red + 0.7152 * green + 0.0722 * blue
+            });
+            let mean = light.sum::<f64>() / (160.0 * 90.0);
+            range = [range[0].min(mean), range[1].max(mean)];
+        }
+        println!("{elevation} degrees: {range:.4?}");
+        assert!(range[1] < 2.25 * range[0], "{elevation}: {range:?}");
     }
 }
 

@@ -66,6 +66,14 @@ class CameraMethods(Struct):
         check(lib.bhr_camera_from_matrices(struct, *matrices, layout))
         return cls.from_c(struct)
 
+    def through_lens(self: _Self, aperture: float, focus: float, aspect: float, index: int, count: int) -> _Self:
+        """The camera at place index (from 0) of count on a round thin lens about it, for depth of field: of the lens's
+        diameter, with all at the distance focus ahead in its place. aspect: the frame's width over its height. Frames
+        from all places add up to the lens's picture (Context.accumulate)."""
+        struct = self.to_c()
+        check(lib.bhr_camera_through_lens(struct, aperture, focus, aspect, index, count))
+        return type(self).from_c(struct)
+
     def matrices(
         self, width: int, height: int, near_z: float, far_z: float = np.inf, flags: int | str = MatrixFlags(0)
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -10,8 +10,8 @@ use crate::emit::free_spot::TABLE_NODES;
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
 use crate::emit::{
-    along, baked, baking, bands, clouds, filaments, glow, half, layers, matter, medium, shape, streaks, turbulence,
-    volumes,
+    along, baked, baking, bands, clouds, crossing, filaments, glow, half, layers, matter, medium, shape, streaks,
+    turbulence, volumes,
 };
 use crate::film::bloom::{BEAM_SHARES, GHOST_PAIRS, SPIKE_ELEMENTS, SPIKE_TERMS};
 use crate::film::hdr;
@@ -184,6 +184,7 @@ fn all() -> Vec<(&'static str, Value)> {
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
         DIM_CHANGE: f32 = refine::DIM_CHANGE;
         LEAST_DIM_CHANGE: f32 = refine::LEAST_DIM_CHANGE;
+        UNKNOWN_STEP: f32 = crossing::UNKNOWN_STEP;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
         LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;

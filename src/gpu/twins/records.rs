@@ -5,6 +5,7 @@
 use super::inputs::{Inputs, Outputs};
 use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
+use crate::emit::{Crossing, EmissionPoint};
 use crate::physics::lens::OrbitPlane;
 use crate::scene::refine::{DiskEdges, Edge, looked_up_edge, near_disk_edge, turn_of, turning_edge};
 use glam::DVec3;
@@ -72,6 +73,43 @@ pub fn group() -> Group {
                 o.flag(near_disk_edge(i.x(1), [i.x(2), i.x(3)], &edges));
             },
             SAME,
+        ),
+        twin(
+            record,
+            "lit_about",
+            "var c: Crossing; c.place = EmissionPoint(-log(in1(0u)), in1(2u), in1(3u));
+             c.dx = EmissionPoint(in1(4u), in1(5u), in1(6u)); c.dy = EmissionPoint(in1(7u), in1(8u), in1(9u));
+             c = lit_about(c, in1(1u), in1(10u)); out1(c.place.ln_r); out1(c.place.azimuth); out1(c.place.delay);
+             out1(c.dx.ln_r); out1(c.dx.azimuth); out1(c.dx.delay);
+             out1(c.dy.ln_r); out1(c.dy.azimuth); out1(c.dy.delay);",
+            |i| {
+                i.even(0.05, 0.2);
+                i.even(0.05, 0.2);
+                i.even(-3.0, 3.0);
+                i.even(-50.0, 50.0);
+                for unknown in [false, true] {
+                    // Some sides are not known, or nothing changes along them.
+                    match i.random.below(8) {
+                        0 if unknown => i.push(1e30),
+                        1 => i.push(0.0),
+                        _ => i.signed(0.01, 0.3),
+                    };
+                    i.signed(0.01, 0.3);
+                    i.signed(0.01, 0.3);
+                }
+                i.even(0.0, 1.0);
+            },
+            |i, o| {
+                let point = |k: usize| EmissionPoint { ln_r: i.x(k), azimuth: i.x(k + 1), delay: i.x(k + 2) };
+                let place = EmissionPoint { ln_r: -i.x(0).ln(), azimuth: i.x(2), delay: i.x(3) };
+                let footprint = [point(4), point(7)];
+                let crossing = Crossing { u: i.x(0), order: 0, g: 1.0, place, footprint, share: 1.0 };
+                let lit = crossing.lit_about(i.x(1), i.x(10));
+                for point in [lit.place, lit.footprint[0], lit.footprint[1]] {
+                    o.all([point.ln_r, point.azimuth, point.delay], 100.0);
+                }
+            },
+            ROUNDING,
         ),
         twin(
             record,

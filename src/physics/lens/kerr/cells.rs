@@ -69,7 +69,7 @@ impl Patch<'_> {
         escaped && error <= TOLERANCE * self.vector_stretch(0..SKY).max(1.0)
     }
 
-    /// `reach_inwards`: `Grid::reach_inwards` of the order.
+    /// `reach_inwards`: the greatest 1 / r at which crossings of the order are looked for.
     fn crossing(&self, channel: usize, order: usize, wanted: &Crossings, reach_inwards: f64) -> Hit {
         let [low, high] = self.range(channel);
         let [near, far] = [wanted.plane_u[1], wanted.plane_u[0]];
@@ -145,7 +145,8 @@ impl Grid {
         }
         for order in 0..self.wanted.orders {
             let channel = SKY + order * self.per_crossing();
-            match patch.crossing(channel, order, &self.wanted, self.reach_inwards(order)) {
+            let reach_inwards = if order > 0 { self.reach_inwards() } else { self.wanted.plane_u[1] };
+            match patch.crossing(channel, order, &self.wanted, reach_inwards) {
                 Hit::No => {}
                 Hit::Possible => flags |= 1 << order,
                 Hit::Poor => flags |= 1 << order | POOR_CROSSINGS,

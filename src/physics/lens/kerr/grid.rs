@@ -220,10 +220,10 @@ impl Grid {
         self.capture_u
     }
 
-    /// The greatest 1 / r at which crossings of an order are told: not beyond `capture_u` unless the disk is.
-    pub fn reach_inwards(&self, order: usize) -> f64 {
+    /// The greatest 1 / r at which crossings are told: not beyond `capture_u` unless the disk is.
+    pub fn reach_inwards(&self) -> f64 {
         let near = self.wanted.plane_u[1];
-        if order > 0 { near.max(self.capture_u.min(NARROW_REACH_INWARDS * near)) } else { near }
+        near.max(self.capture_u.min(NARROW_REACH_INWARDS * near))
     }
 
     /// Epsilon of the coordinate along the critical curve.

@@ -205,7 +205,7 @@ impl KerrLookup<'_> {
         let lane = if wanted.pattern { 0 } else { order % PER_QUAD };
         let inverse_side = 1.0 / self.place.side;
         let u = f64::from(at.value[lane]) * inverse_side;
-        if !(u <= self.grid.reach_inwards(order) && f64::from(at.value[lane].abs()) < 0.5 * NO_CROSSING) {
+        if !(u <= self.grid.reach_inwards() && f64::from(at.value[lane].abs()) < 0.5 * NO_CROSSING) {
             return None;
         }
         let order = order as u32;
