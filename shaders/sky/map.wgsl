@@ -53,7 +53,9 @@ fn map_patch(footprint: Footprint) -> Patch {
 fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch) -> vec3<f32> {
     let texel = min(PI / f32(size.y), TAU / f32(size.x));
     let last = firstLeadingBit(size.x);
-    let tap = max(sqrt(texel * texel + patch_.minor * patch_.minor / 3.0), patch_.least);
+    let finest = SHORT_ROW * texel;
+    let minor2 = max(patch_.minor * patch_.minor - finest * finest, 0.0);
+    let tap = max(sqrt(texel * texel + minor2 / 3.0), patch_.least);
     let level = min(level_of(tap / texel), f32(last));
     let finer = u32(level);
     let share = level - f32(finer);

@@ -33,8 +33,9 @@ pub(crate) const TINY_AXIS: f64 = 1e-12;
 /// The distance of neighbouring taps, in texels that they are taken from, at which another pair of them begins to come
 /// in.
 pub(crate) const TAP_SPACING: f64 = 1.5;
-/// The length of a row, in texels that taps are taken from, up to which it has one tap. Its square is left out of those
-/// of longer ones, so that they begin with two taps in one place.
+/// The length of a row, in texels that taps are taken from, up to which it has one tap, and the minor axis of a patch,
+/// in the finest texels, up to which taps are taken from those alone. Its square is left out of longer ones', so that
+/// they begin with two taps in one place and with the finest texels.
 pub(crate) const SHORT_ROW: f64 = 0.3;
 /// Taps stand on a straight line of the map where a great circle bends away from it by at most an eighth of this, in
 /// texels that they are taken from.
@@ -102,7 +103,9 @@ impl SkyMap {
         let texel = self.texel_angle();
         // Variances are those of boxes of a width. A tap has three times that of its texels, one for the mean over each
         // and two for the interpolation, as the magnified map has of its own.
-        let tap = (texel * texel + patch.minor * patch.minor / 3.0).sqrt().max(patch.least);
+        let short = SHORT_ROW * texel;
+        let minor2 = (patch.minor * patch.minor - short * short).max(0.0);
+        let tap = (texel * texel + minor2 / 3.0).sqrt().max(patch.least);
         let level = level_of(tap / texel).min(self.levels().len() as f64 - 1.0);
         let place = map_place(d);
         let row = Row::new((patch.major * patch.major + 3.0 * (texel * texel - tap * tap)).max(0.0).sqrt(), tap);
