@@ -75,16 +75,24 @@ fn command() -> Command {
             .value_parser(value_parser!(f64)),
         )
         .arg(
-            option("shutter-samples", "N", "The moments of a blurred frame, 2 to 4096; default 16, with --aperture 64")
-                .value_parser(value_parser!(u32).range(2..=4096)),
+            option(
+                "shutter-samples",
+                "N",
+                "Moments of a blurred frame, 2 to 4096; default 16, or 64 if --aperture is given",
+            )
+            .value_parser(value_parser!(u32).range(2..=4096)),
         )
         .arg(
             option("aperture", "LENGTH", "Depth of field: the diameter of the lens, scene lengths; 0: off")
                 .value_parser(value_parser!(f64)),
         )
         .arg(
-            option("focus", "LENGTH", "With --aperture: the distance ahead that is sharp; default that of the hole")
-                .value_parser(value_parser!(f64)),
+            option(
+                "focus",
+                "LENGTH",
+                "With --aperture: the distance ahead that is sharp; by default the hole's distance",
+            )
+            .value_parser(value_parser!(f64)),
         )
         .arg(flag("float", "Pixels of 32 bits in .exr files, instead of 16"))
         .arg(option("colour-space", "NAME", "Primaries of .exr files: rec709 (default), p3, rec2020 or acescg"))

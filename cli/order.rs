@@ -259,7 +259,7 @@ impl Order {
         let shutter = shutter_of(given)?;
         if shutter.is_some() && (tile.is_some() || stereo.is_some() || !outputs.is_empty()) {
             return Err(Ending::usage(
-                "--shutter, --aperture: blurred frames are whole ones of one eye without --outputs",
+                "--shutter, --aperture: a blurred frame must be a whole frame of one eye, without --outputs",
             ));
         }
         let transparent = given.get_flag("transparent");
@@ -481,7 +481,7 @@ impl Order {
             }
             if let Some(lens) = shutter.lens {
                 let camera = &mut renderer.scene.camera;
-                // The hole's distance along the line of sight, or what there is of it behind the camera.
+                // The hole's distance along the line of sight; its straight distance where it is not ahead.
                 let ahead = -camera.position.dot(camera.forward.normalize());
                 let focus = lens.focus.unwrap_or(if ahead > 0.0 { ahead } else { camera.position.length() });
                 let [width, height] = self.size.map(f64::from);

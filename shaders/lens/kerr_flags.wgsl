@@ -158,7 +158,8 @@ fn margin_of(p: Patch, k: u32) -> f32 {
     return 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
 }
 
-// Whether crossings lie nearer to the hole than those: they need not be exact.
+// Whether all crossings of the cell lie farther in than pixels beside the disk look for. Such crossings need not be
+// exact.
 fn is_inside_disk(p: Patch, k: u32) -> bool {
     return p.low[k] - margin_of(p, k) > nearest_u();
 }

@@ -104,7 +104,7 @@ fn lit_about(crossing: Crossing, u: f32, extent: f32) -> Crossing {
     let dx = crossing.dx;
     let dy = crossing.dy;
     let ln_r = -log(u);
-    // Sides that are not known, of 1e30, change nothing and stay so.
+    // Where either side is unknown (1e30), only ln r of the place is set. The cap keeps its square finite in f32.
     let steps = min(abs(vec2<f32>(dx.ln_r, dy.ln_r)), vec2<f32>(UNKNOWN_STEP));
     let steepness = dot(steps, steps);
     let known = steepness > 0.0 && max(steps.x, steps.y) < UNKNOWN_STEP;

@@ -20,7 +20,8 @@ struct Patch {
     least: f32,
 }
 
-// Taps in a row: their number; the pairs of them beside the middle; the distance from each to the next, rad.
+// Taps in a row: their number; the pairs of them about the middle, of which the fraction is the outermost one's weight;
+// the distance from each tap to the next, rad.
 struct Row {
     count: u32,
     reach: f32,

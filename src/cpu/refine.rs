@@ -55,7 +55,8 @@ struct Lit {
 }
 
 impl Lit {
-    /// Light about a difference of u, of which it has a twelfth of `spread2` for a variance.
+    /// Adds the light of a part: `off` is the mean of its u less the crossing's, and `spread2` is twelve times the
+    /// variance of u over it.
     fn add(&mut self, light: f64, off: f64, spread2: f64) {
         self.light += light;
         self.off += light * off;
@@ -65,7 +66,8 @@ impl Lit {
     /// The crossing as the disk's structure is to be seen there: that of the places that the light comes from, which
     /// may be few of those in the cell. `spread2`: twelve times the variance of u over the cell.
     fn crossing(&self, crossing: &Crossing, spread2: f64) -> Crossing {
-        if self.light <= 0.0 || spread2 <= 0.0 {
+        let known = self.light > 0.0 && spread2 > 0.0;
+        if !known {
             return *crossing;
         }
         let [off, off2] = [self.off, self.off2].map(|sum| sum / self.light);

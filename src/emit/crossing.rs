@@ -29,13 +29,14 @@ pub struct Crossing {
     pub share: f64,
 }
 
-/// Changes of ln r from here on are not known.
+/// A change of ln r that is at least this great stands for one that is not known.
 pub(crate) const UNKNOWN_STEP: f64 = 1e15;
 
 impl Crossing {
     /// The crossing with place and footprint of the light that leaves about 1/r = `u`, within the pixel or the cell of
     /// a sample: as far along the steepest change of ln r as this takes, with the azimuth and delay that the way there
-    /// has. `extent`: the share that this light has of the change of 1/r over the pixel or cell.
+    /// has. `extent`: the share that this light has of the change of 1/r over the pixel or cell. Where a side of the
+    /// footprint is not known, only ln r of the place is set.
     pub fn lit_about(&self, u: f64, extent: f64) -> Self {
         let [dx, dy] = self.footprint;
         let ln_r = -u.ln();

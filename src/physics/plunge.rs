@@ -97,8 +97,8 @@ impl Matter {
 
     /// g of light that has this energy and angular momentum where the local observer measures frequency 1, from matter
     /// at 1/r = `u` near its crossing of the plane, which is at 1/r = `crossing` with g = `known`. Where matter plunges
-    /// at either place that is `known`, as it takes more than these two numbers. `ratio`: nu(camera) / nu(local frame).
-    /// NaN inside the photon orbit.
+    /// at either of the two places `known` is returned, because g then depends on more than these two numbers. `ratio`
+    /// is nu(camera) / nu(local frame). The result is NaN inside the photon orbit.
     pub fn redshift_beside(
         &self,
         spin: f64,

@@ -69,8 +69,8 @@ impl Preset {
                 Disk {
                     outer_radius: 12.0,
                     temperature: 5000.0,
-                    // So chosen that the mean brightness of pictures, clipped as displays clip it, differs by less
-                    // than a factor of 2.25 from spin to spin.
+                    // At this brightness the mean of a picture, clipped as displays clip it, differs by less than a
+                    // factor of 2.25 from spin to spin.
                     brightness: 0.8,
                     reference: DiskReference::Median,
                     ..Disk::plain()

@@ -20,7 +20,8 @@ pub struct Record {
     pub footprint: [DVec3; 2],
     /// `RayTrace::turned`; NaN where it is not known, as of rays that were looked up.
     pub turned: f64,
-    /// nu(camera) / nu(at infinity), as the energy has it whether the ray goes there or not; NaN of no ray.
+    /// nu(camera) / nu(at infinity), as the energy has it whether the ray goes there or not. NaN where there is no ray,
+    /// and in records that come from the GPU unless they escaped.
     pub sky_redshift: f64,
     /// E and L, scaled so that the local frame's observer measures 1. `sky_redshift` times `energy` is nu(camera) /
     /// nu(local frame).

@@ -76,11 +76,13 @@ pub(crate) const EDGE_REACH: f64 = 0.6;
 /// The relative change of u from pixel to pixel above which the disk's mean light in the pixel is not that at its
 /// centre.
 pub(crate) const STEEP_CHANGE: f64 = 0.1;
-/// Near the ISCO the light goes to 0 as a high power of the distance (Page & Thorne 1974): the mean light in the pixel
-/// is not that at its centre, either, where u changes by more than this share of the distance. Where it changes by less
-/// than the second number, as a share of u of the ISCO, disks of up to some 10,000 K are too dim there for it to be
-/// seen: at 6500 K they have a hundredth of the hottest ring's light.
+/// Near the ISCO the disk's light goes to 0 as a high power of the distance from it (Page & Thorne 1974). The share of
+/// that distance, in u, above which a change of u from pixel to pixel makes the pixel's mean light differ from that at
+/// its centre.
 pub(crate) const DIM_CHANGE: f64 = 0.33;
+/// The least change of u, as a share of u of the ISCO, for which this is looked at. With smaller ones all pixels that
+/// it concerns are too dim for it to be seen, on disks of up to some 10,000 K: at 6500 K they have a hundredth of the
+/// hottest ring's light.
 pub(crate) const LEAST_DIM_CHANGE: f64 = 0.012;
 /// The distance to the critical curve, pixels, below which a looked-up pixel is `Curve`.
 pub(crate) const CURVE_REACH: f64 = 0.85;

@@ -17,7 +17,7 @@ pub struct ThinLens {
     pub aperture: f64,
     /// The distance along the line of sight of the plane that is in focus, scene lengths, above 0.
     pub focus: f64,
-    /// The frame's width over its height, above 0; for `Projection::Perspective`.
+    /// The frame's width over its height, above 0; `Projection::Frustum` does not need it.
     pub aspect: f64,
 }
 
@@ -57,7 +57,7 @@ fn place(index: u32, count: u32) -> DVec2 {
     radius * DVec2::from_angle(TAU * f64::from(index.reverse_bits()) / 4_294_967_296.0)
 }
 
-/// The number next above 0.618 `count` that has no divisor in common with it.
+/// The first number, from 0.618 `count` rounded to a whole number upwards, that has no divisor in common with `count`.
 fn stride(count: u32) -> u32 {
     let mut stride = ((f64::from(count) * 0.618_033_988_75).round() as u32).max(1);
     while divisor(stride, count) != 1 {
@@ -66,7 +66,7 @@ fn stride(count: u32) -> u32 {
     stride
 }
 
-/// The greatest in common (Euclid).
+/// The greatest common divisor of two numbers, by Euclid's algorithm.
 fn divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { divisor(b, a % b) }
 }

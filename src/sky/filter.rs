@@ -18,8 +18,8 @@ use super::map::{Level, SkyMap};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-/// Longest row of taps, in texels that they are taken from: of rows that are shorter than MAX_SPREAD WIDE_TAP; of any.
-/// So there are at most 8 and 148 in a row.
+/// The greatest length of a row in texels that its taps are taken from: of rows that are shorter than MAX_SPREAD
+/// WIDE_TAP, and of longer ones. So there are at most 8 and 148 taps in a row.
 pub(crate) const MAX_SPREAD: f64 = 10.4;
 pub(crate) const MOST_SPREAD: f64 = 222.0;
 /// The texels that a tap on a long thin line is taken from, rad: some 1.3 degrees; a thin line over as little of the
@@ -33,9 +33,9 @@ pub(crate) const TINY_AXIS: f64 = 1e-12;
 /// The distance of neighbouring taps, in texels that they are taken from, at which another pair of them begins to come
 /// in.
 pub(crate) const TAP_SPACING: f64 = 1.5;
-/// The length of a row, in texels that taps are taken from, up to which it has one tap, and the minor axis of a patch,
-/// in the finest texels, up to which taps are taken from those alone. Its square is left out of longer ones', so that
-/// they begin with two taps in one place and with the finest texels.
+/// A row that is no longer than this, in texels that its taps are taken from, has one tap. A patch whose minor axis is
+/// no longer than this, in the finest texels, takes taps from those alone. The square of this length is subtracted from
+/// that of longer rows and axes, so that nothing jumps at the limit: a row begins with two taps in one place.
 pub(crate) const SHORT_ROW: f64 = 0.3;
 /// Taps stand on a straight line of the map where a great circle bends away from it by at most an eighth of this, in
 /// texels that they are taken from.
@@ -55,7 +55,8 @@ struct Patch {
 /// Taps in a row, all at one distance from the next.
 struct Row {
     count: u32,
-    /// The pairs of taps beside the middle, of which the outermost counts by the fraction.
+    /// How many pairs of taps stand about the middle. If this is not a whole number, its fraction is the weight of the
+    /// outermost pair.
     reach: f64,
     /// rad.
     step: f64,

@@ -5,6 +5,7 @@
 //! 100,000 files of each kind instead of some thousand.
 #![cfg(target_os = "linux")]
 
+mod cubes;
 mod hostile;
 mod ktx2;
 #[path = "../random/mod.rs"]

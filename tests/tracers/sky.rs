@@ -154,7 +154,10 @@ fn agree(sampler: bool) {
             assert!(lit > 200, "{name}, flags {flags}: {lit} pixels have light");
         }
     }
-    assert!(worst * 1000 <= (size[0] * size[1]) as usize, "{worst} pixels differ");
+    // The weights of a GPU's sampler have 8 bits, between levels, too: that shows where dark texels lie beside bright
+    // ones. Software samplers have more.
+    let least_share = if sampler { 250 } else { 1000 };
+    assert!(worst * least_share <= (size[0] * size[1]) as usize, "{worst} pixels differ");
 }
 
 /// A map of one colour is that colour wherever the light of it arrives as it left.

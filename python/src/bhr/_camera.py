@@ -67,9 +67,10 @@ class CameraMethods(Struct):
         return cls.from_c(struct)
 
     def through_lens(self: _Self, aperture: float, focus: float, aspect: float, index: int, count: int) -> _Self:
-        """The camera at place index (from 0) of count on a round thin lens about it, for depth of field: of the lens's
-        diameter, with all at the distance focus ahead in its place. aspect: the frame's width over its height. Frames
-        from all places add up to the lens's picture (Context.accumulate)."""
+        """For depth of field: the camera moved to place index (from 0) of count on a round thin lens around it. The
+        lens has the diameter aperture, and what lies at the distance focus ahead keeps its place in the picture. aspect
+        is the frame's width over its height. The frames from all places add up to the lens's picture
+        (Context.accumulate)."""
         struct = self.to_c()
         check(lib.bhr_camera_through_lens(struct, aperture, focus, aspect, index, count))
         return type(self).from_c(struct)

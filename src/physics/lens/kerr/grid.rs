@@ -99,9 +99,9 @@ pub struct Crossings {
 /// Crossings of order 1 and more reach beyond `Crossings::plane_u` by so much: their images are so narrow that 1 / r
 /// goes through all of it within a pixel, and pixels whose own ray crosses farther out show a part of them.
 pub const NARROW_REACH: f64 = 0.3;
-/// They reach inwards by so much, for the same reason: beside a disk that ends far from the photon orbit, as one that
-/// turns against the hole does, samples of a pixel on both sides of an image would seem to have no crossing. Such
-/// crossings need not be exact.
+/// Crossings of order 1 and more also reach inwards, by this factor: beside a disk that ends far from the photon orbit,
+/// as one that turns against the hole does, samples of a pixel on both sides of an image would otherwise seem to have
+/// no crossing. Such crossings need not be exact.
 pub const NARROW_REACH_INWARDS: f64 = 3.0;
 
 impl Crossings {
