@@ -230,7 +230,7 @@ fn redshift_of(c: Constants, u: f32) -> f32 {
     return c.nu_local * orbital_redshift(c.energy, c.angular_momentum, u);
 }
 
-// This g of light that has E and L in units of the frequency that is received.
+// g of the disk's matter on its circular orbit, of light that has E and L where the observer measures frequency 1.
 fn orbital_redshift(energy: f32, angular_momentum: f32, u: f32) -> f32 {
     let v = sign(frame.signed_isco) * u * sqrt(u);
     return sqrt(max(1.0 - 3.0 * u + 2.0 * frame.spin * v, 0.0))

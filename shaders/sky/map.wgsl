@@ -62,7 +62,7 @@ fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch)
     let share = level - f32(finer);
     // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that
     // lavapipe, which runs whatever an `if` leaves out, does not read it for nothing. A sampler reads both itself; its
-    // weights have 8 bits, which is less than a step of 255 between any two texels.
+    // weights have 8 bits on GPUs, which shows by a few steps of 255 in dark texels beside bright ones.
     let double = select(0u, 1u, share > 0.0 && !MAP_SAMPLER);
     let line = sqrt(max(patch_.major * patch_.major + 3.0 * (texel * texel - tap * tap), 0.0));
     let row = row_of_taps(line, tap);

@@ -386,7 +386,8 @@ mod tests {
             });
             values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
         };
-        // Beside whole periods of four texels a patch of six has two, with 1/4 to 7/4 of light between texels.
+        // A patch six texels long holds a whole period of four, half of it light, and two texels more, of which 1/4 to
+        // 7/4 are light, as the map goes evenly from one texel to the next: 2.25 / 6 to 3.75 / 6 in all.
         assert!((contrast(&stripes(true)) - 0.25).abs() < 0.05, "{}", contrast(&stripes(true)));
         assert!(contrast(&stripes(false)) > 0.5, "{}", contrast(&stripes(false)));
     }
