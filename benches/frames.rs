@@ -3,11 +3,12 @@
 //! mean nothing) and on the CPU tracer by wall time. `cargo bench`, or the program by itself; a word measures the
 //! scenes whose names have it. Ends with a table: median and the 5 % and 95 % quantiles of all frames measured.
 
-use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::image::{ImageMut, Lut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
 use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky, Volume, VolumeResolution};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Until a scene's caches, clocks and governors have settled.
@@ -199,6 +200,43 @@ fn volumes(measured: &mut dyn FnMut(&str, Set)) {
     }
 }
 
+/// The scene of a new context; its quality stays, which says that frames are not written into the host's memory.
+fn default_scene(a: f64) -> impl FnOnce(&mut Renderer) {
+    move |renderer| {
+        let plain = std::mem::take(&mut renderer.scene);
+        renderer.scene.quality = plain.quality;
+        renderer.scene.hole.spin = a;
+    }
+}
+
+/// The films of the default scene at spin 0.9.
+fn films(measured: &mut dyn FnMut(&str, Set)) {
+    let mut film = |name: &str, change: fn(&mut Scene)| {
+        let set = move |renderer: &mut Renderer| {
+            default_scene(0.9)(renderer);
+            change(&mut renderer.scene);
+        };
+        measured(&format!("film, {name}"), Box::new(set));
+    };
+    film("as it is", |_| ());
+    film("auto exposure", |scene| scene.film.auto_exposure.strength = 1.0);
+    film("auto exposure and a LUT", |scene| {
+        scene.film.auto_exposure.strength = 1.0;
+        let node = |i: u32| (i % 33) as f32 / 32.0;
+        let numbers = (0..33 * 33 * 33).flat_map(|i: u32| [node(i), node(i / 33), node(i / 33 / 33)]);
+        let numbers: Vec<f32> = numbers.collect();
+        scene.film_lut = Some(Arc::new(Lut::new(33, numbers.into_iter()).expect("a LUT")));
+    });
+    film("highlights and shadows", |scene| (scene.film.highlights, scene.film.shadows) = (0.5, 0.2));
+    film("a streak", |scene| scene.film.optics.streak = 0.5);
+    film("spikes", |scene| scene.film.optics.spikes = 0.5);
+    film("a flare", |scene| scene.film.optics.flare = 0.5);
+    film("a grade", |scene| {
+        let grade = &mut scene.film.grade;
+        (grade.contrast, grade.saturation, grade.vignette, grade.grain) = (1.1, 0.9, 0.3, 0.2);
+    });
+}
+
 fn gpu(times: &mut Times, frames: usize) {
     let software = Stage::new(None, [16, 16], |_| ()).renderer.adapter().software;
     let size = if software { [1280, 720] } else { [3840, 2160] };
@@ -226,14 +264,9 @@ fn gpu(times: &mut Times, frames: usize) {
         }
     }
     for a in [0.0, 0.9, 0.998] {
-        let default = move |r: &mut Renderer| {
-            // Quality stays: it says that frames are not written into the host's memory.
-            let plain = std::mem::take(&mut r.scene);
-            r.scene.quality = plain.quality;
-            r.scene.hole.spin = a;
-        };
-        measured(&format!("default scene, spin {a}"), size, Change::Nothing, Box::new(default));
+        measured(&format!("default scene, spin {a}"), size, Change::Nothing, Box::new(default_scene(a)));
     }
+    films(&mut |name, set| measured(name, size, Change::Nothing, set));
     let sizes = if software { vec![[640, 360]] } else { vec![size, [1920, 1080]] };
     for size in sizes {
         volumes(&mut |name, set| measured(name, size, Change::Nothing, set));

@@ -479,6 +479,10 @@ impl Order {
                     "--shutter, --aperture: the scene has a region, and blurred frames are whole",
                 ));
             }
+            // The scene's own shutter would blur each of these moments once more.
+            if shutter.open > 0.0 {
+                renderer.scene.shutter = 0.0;
+            }
             if let Some(lens) = shutter.lens {
                 let camera = &mut renderer.scene.camera;
                 // The hole's distance along the line of sight; its straight distance where it is not ahead.
@@ -493,6 +497,9 @@ impl Order {
         }
         // The film is that of the frame's moment.
         self.show(frame, renderer)?;
+        if shutter.open > 0.0 {
+            renderer.scene.shutter = 0.0;
+        }
         let layout = places.first().map_or_else(|| self.layout(), |place| place.layout);
         let mut image = ImageMut::new(layout, bytemuck::cast_slice_mut(pixels))?;
         Ok(renderer.end_accumulation(&mut image, self.transparent)?)

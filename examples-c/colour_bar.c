@@ -8,8 +8,9 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
+#define COLDEST 2000.0 /* of the bar of temperatures, in kelvin */
+#define HOTTEST 12000.0
 #define GROUND 0.25 /* light of the picture that is left behind the bar, of codes */
-#define NO_VALUE 128
 #define LEAST_WIDTH 300u /* of a picture, in pixels, for text of scale 1 */
 #define LEAST_HEIGHT 150u
 /* Pixels at scale 1: above the title and below the numbers, the bar's thickness, capitals, ticks, and what is between
@@ -41,6 +42,36 @@ static void from_lab(double lightness, double a, double b, unsigned char rgb[3])
     rgb[0] = encoded(3.240970 * x - 1.537383 * y - 0.498611 * z);
     rgb[1] = encoded(-0.969244 * x + 1.875968 * y + 0.041555 * z);
     rgb[2] = encoded(0.055630 * x - 0.203977 * y + 1.056972 * z);
+}
+
+/* A bell whose halves have widths of their own, nm. */
+static double lobe(double wavelength, double middle, double below, double above) {
+    const double x = (wavelength - middle) / (wavelength < middle ? below : above);
+    return exp(-0.5 * x * x);
+}
+
+/* The colour of a blackbody at a temperature, in kelvin, as bright as it can be shown: Planck's law, seen by the CIE
+ * 1931 observer as C. Wyman, P.-P. Sloan and P. Shirley (JCGT 2, 2013) fit it. */
+static void from_temperature(double temperature, unsigned char rgb[3]) {
+    double x = 0.0, y = 0.0, z = 0.0;
+    for (double nm = 380.0; nm <= 780.0; nm += 5.0) {
+        const double power = pow(nm / 560.0, -5.0) / (exp(1.4387769e7 / (nm * temperature)) - 1.0);
+        x += power * (1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
+                      0.065 * lobe(nm, 501.1, 20.4, 26.2));
+        y += power * (0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1));
+        z += power * (1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8));
+    }
+    const double light[3] = {fmax(3.240970 * x - 1.537383 * y - 0.498611 * z, 0.0),
+                             fmax(-0.969244 * x + 1.875968 * y + 0.041555 * z, 0.0),
+                             fmax(0.055630 * x - 0.203977 * y + 1.056972 * z, 0.0)};
+    const double most = fmax(fmax(light[0], light[1]), light[2]);
+    for (int i = 0; i < 3; i++) {
+        rgb[i] = encoded(light[i] / most);
+    }
+}
+
+static void by_temperature(double share, unsigned char rgb[3]) {
+    from_temperature(COLDEST * pow(HOTTEST / COLDEST, share), rgb);
 }
 
 /* The two maps of docs/views.md. */
@@ -135,6 +166,57 @@ int colour_bar_of_film(const BhrFilm *film, ColourBar *bar) {
     return 1;
 }
 
+/* Whether the film shows light as it is, but for its exposure. */
+static int is_plain(const BhrFilm *film) {
+    return film->tone_map == BHR_TONE_MAP_NONE && film->colour_map == BHR_COLOUR_MAP_NONE && film->bloom == 0.0 &&
+           film->highlights == 0.0 && film->shadows == 0.0 && film->white_balance == 0.0 && film->tint == 0.0 &&
+           film->contrast == 1.0 && film->saturation == 1.0;
+}
+
+/* Whether the colours of a context's disk are those of blackbodies as their light is shifted, and nothing else changes
+ * them, as in BHR_PRESET_TEACHING. */
+static int shows_temperatures(const BhrContext *context) {
+    BhrView  view;
+    BhrFilm  film;
+    BhrDisk  disk;
+    BhrSky   sky;
+    uint32_t effects;
+    int32_t  has_disk;
+    double   doppler, gravity;
+    BHR_INIT(film), BHR_INIT(disk), BHR_INIT(sky);
+    if (bhr_get_view(context, &view) < 0 || bhr_get_film(context, &film) < 0 || bhr_get_sky(context, &sky) < 0 ||
+        bhr_get_disk(context, &disk, &has_disk) < 0 || bhr_get_effects(context, &effects) < 0 ||
+        bhr_get_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT, &doppler) < 0 ||
+        bhr_get_effect_strength(context, BHR_EFFECT_GRAVITY_SHIFT, &gravity) < 0) {
+        return 0;
+    }
+    const uint32_t shifts = BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT;
+    return view == BHR_VIEW_LIGHT && is_plain(&film) && has_disk && (sky.flags & BHR_SKY_GRID) != 0 &&
+           (effects & shifts) == shifts && (effects & BHR_EFFECT_BEAMING) == 0 && doppler == 1.0 && gravity == 1.0;
+}
+
+int colour_bar_of_temperatures(const BhrContext *context, ColourBar *bar) {
+    static const double TEMPERATURES[] = {2000.0, 3000.0, 4500.0, 6500.0, 9000.0, 12000.0};
+    if (!shows_temperatures(context)) {
+        return 0;
+    }
+    *bar = (ColourBar){.title = "disk: temperature seen, g T, in kelvin", .colour = by_temperature};
+    for (; bar->count < COUNT_OF(TEMPERATURES); bar->count++) {
+        Mark *mark = &bar->marks[bar->count];
+        mark->share = log(TEMPERATURES[bar->count] / COLDEST) / log(HOTTEST / COLDEST);
+        snprintf(mark->text, sizeof mark->text, "%.0f", TEMPERATURES[bar->count]);
+    }
+    return 1;
+}
+
+int colour_bar_of(BhrView view, const BhrFilm *film, ColourBar *bar) {
+    if (view == BHR_VIEW_LIGHT ? colour_bar_of_film(film, bar) : colour_bar_of_view(view, bar)) {
+        return 1;
+    }
+    *bar = (ColourBar){.count = 0};
+    return 0;
+}
+
 void colour_bar_mark(ColourBar *bar, double most) {
     const double power = pow(10.0, floor(log10(most))), leading = most / power;
     const double step = power * (leading < 1.5 ? 0.2 : leading < 3.0 ? 0.5 : leading < 6.0 ? 1.0 : 2.0);
@@ -142,6 +224,18 @@ void colour_bar_mark(ColourBar *bar, double most) {
         bar->marks[bar->count].share = bar->count * step / most;
         snprintf(bar->marks[bar->count].text, sizeof bar->marks->text, "%g", bar->count * step);
     }
+}
+
+void colour_bar_at(const ColourBar *bar, double share, unsigned char rgb[3]) {
+    if (bar->steps != 0) {
+        const uint32_t field = (uint32_t)(share * bar->steps);
+        share = bar->marks[field < bar->steps ? field : bar->steps - 1].share;
+    }
+    bar->colour(share, rgb);
+}
+
+double colour_bar_place(const ColourBar *bar, uint32_t mark) {
+    return bar->steps != 0 ? (mark + 0.5) / bar->steps : bar->marks[mark].share;
 }
 
 /* ---- drawing ---- */
@@ -173,12 +267,8 @@ static uint32_t text_width(const char *text, uint32_t scale) {
 static void draw_colours(BhrImage *image, const ColourBar *bar, uint32_t left, uint32_t top, uint32_t width,
                          uint32_t height) {
     for (uint32_t x = 0; x < width; x++) {
-        double share = (x + 0.5) / width;
-        if (bar->steps != 0) {
-            share = bar->marks[(uint32_t)(share * bar->steps)].share;
-        }
         unsigned char rgb[3];
-        bar->colour(share, rgb);
+        colour_bar_at(bar, (x + 0.5) / width, rgb);
         fill(image, left + x, top, 1, height, rgb);
     }
 }
@@ -187,8 +277,7 @@ static void draw_marks(BhrImage *image, const ColourBar *bar, uint32_t left, uin
                        uint32_t scale) {
     static const unsigned char WHITE[3] = {235, 235, 235};
     for (uint32_t i = 0; i < bar->count; i++) {
-        const double   share = bar->steps != 0 ? (i + 0.5) / bar->steps : bar->marks[i].share;
-        const uint32_t x = left + (uint32_t)(share * (width - 1) + 0.5);
+        const uint32_t x = left + (uint32_t)(colour_bar_place(bar, i) * (width - 1) + 0.5);
         if (bar->steps == 0) {
             fill(image, x, top, scale, TICK * scale, WHITE);
         }
@@ -198,7 +287,7 @@ static void draw_marks(BhrImage *image, const ColourBar *bar, uint32_t left, uin
 }
 
 void colour_bar_draw(BhrImage *image, const ColourBar *bar, uint32_t scale) {
-    static const unsigned char GREY[3] = {NO_VALUE, NO_VALUE, NO_VALUE};
+    static const unsigned char GREY[3] = {COLOUR_BAR_GREY, COLOUR_BAR_GREY, COLOUR_BAR_GREY};
     const uint32_t             height = COLOUR_BAR_ROWS * scale, line = CELL_HEIGHT * scale, edge = EDGE * scale;
     const uint32_t             margin = image->width / 12, width = image->width - 2 * margin;
     const uint32_t             top = image->height - height;
@@ -221,16 +310,21 @@ BhrStatus colour_bar_of_frames(const BhrContext *context, ColourBar *bar) {
     if (status >= 0) {
         status = bhr_get_film(context, &film);
     }
-    if (status < 0 || !(view == BHR_VIEW_LIGHT ? colour_bar_of_film(&film, bar) : colour_bar_of_view(view, bar))) {
-        *bar = (ColourBar){.count = 0};
+    *bar = (ColourBar){.count = 0};
+    if (status >= 0) {
+        colour_bar_of(view, &film, bar);
     }
     return status;
 }
 
-uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar) {
+uint32_t colour_bar_scale(uint32_t width, uint32_t height) {
     /* Text looks alike on a page, whatever a picture's resolution. */
-    const uint32_t by_width = image->width / LEAST_WIDTH, by_height = image->height / LEAST_HEIGHT;
-    const uint32_t scale = ((by_width < by_height ? by_width : by_height) + 1) / 2;
+    const uint32_t by_width = width / LEAST_WIDTH, by_height = height / LEAST_HEIGHT;
+    return ((by_width < by_height ? by_width : by_height) + 1) / 2;
+}
+
+uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar) {
+    const uint32_t scale = colour_bar_scale(image->width, image->height);
     if (scale == 0 || bar->count == 0) {
         return 0;
     }
@@ -241,6 +335,9 @@ uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar) {
 BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image) {
     ColourBar       bar;
     const BhrStatus status = colour_bar_of_frames(context, &bar);
+    if (status >= 0 && bar.count == 0) {
+        colour_bar_of_temperatures(context, &bar);
+    }
     colour_bar_put(image, &bar);
     return status;
 }

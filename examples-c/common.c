@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
- * whether a stream is a terminal, a new folder, the program's own, the number of cores. */
+/* common.c -- see common.h. Asks more of the system than C99, which else only video.c and film_folder.c do: a
+ * monotonic clock, whether a stream is a terminal, a new folder, the program's own, the number of cores. */
 #if defined(__linux__)
 #define _GNU_SOURCE /* sched_getaffinity, and what POSIX has */
 #elif !defined(_WIN32)
@@ -13,6 +13,7 @@
 #include "common.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -107,11 +108,26 @@ BhrStatus create_context_beside(const BhrAdapterInfo *adapter, BhrContext **out)
 /* ---- a bar ---- */
 
 #define PROGRESS_AFTER_SECONDS 0.5 /* what is done sooner needs no bar */
+#define PROGRESS_EVERY_SECONDS 0.1
 #define PROGRESS_CELLS 40
+#define PROGRESS_CELLS_OF_FRAMES 20 /* with the words behind it the line fits into 80 columns */
 
 Progress progress_begin(int shown) {
-    const Progress progress = {shown, -1, wall_seconds()};
+    const Progress progress = {shown, -1, wall_seconds(), 0.0, 0};
     return progress;
+}
+
+/* Over what was drawn before, which may have been longer. */
+static void draw_line(Progress *progress, int cells, double fraction, const char *words) {
+    char bar[PROGRESS_CELLS + 1];
+    for (int i = 0; i < cells; i++) {
+        bar[i] = i < (int)(fraction * cells) ? '#' : '.';
+    }
+    bar[cells] = '\0';
+    const int width = cells + 3 + (int)strlen(words);
+    fprintf(stderr, "\r[%s] %s%*s", bar, words, progress->width > width ? progress->width - width : 0, "");
+    fflush(stderr);
+    progress->width = width;
 }
 
 void progress_draw(Progress *progress, double fraction) {
@@ -121,20 +137,41 @@ void progress_draw(Progress *progress, double fraction) {
         return;
     }
     progress->percent = percent;
-    char bar[PROGRESS_CELLS + 1];
-    for (int i = 0; i < PROGRESS_CELLS; i++) {
-        bar[i] = i < (int)(fraction * PROGRESS_CELLS) ? '#' : '.';
+    char words[16];
+    snprintf(words, sizeof words, "%3d %%", percent);
+    draw_line(progress, PROGRESS_CELLS, fraction, words);
+}
+
+void progress_draw_frames(Progress *progress, double made, uint32_t before, uint32_t all) {
+    const double now = wall_seconds(), elapsed = now - progress->begin, done = before + made;
+    if (!progress->shown || elapsed < PROGRESS_AFTER_SECONDS || now - progress->drawn < PROGRESS_EVERY_SECONDS) {
+        return;
     }
-    bar[PROGRESS_CELLS] = '\0';
-    fprintf(stderr, "\r[%s] %3d %%", bar, percent);
-    fflush(stderr);
+    progress->drawn = now;
+    char words[96];
+    int  length = snprintf(words, sizeof words, "%u of %u frames", (unsigned)done, (unsigned)all);
+    if (made > 0.0) {
+        const double   rate = made / elapsed;
+        const double   left = (all - done) / rate;
+        const uint32_t seconds = left < 3.6e6 ? (uint32_t)(left + 0.5) : 3600000u; /* 1000 hours */
+        length += snprintf(words + length, sizeof words - (size_t)length, ", %.3g a second, ", rate);
+        if (seconds >= 3600) {
+            length += snprintf(words + length, sizeof words - (size_t)length, "%u:%02u:%02u left",
+                               (unsigned)(seconds / 3600), (unsigned)(seconds / 60 % 60), (unsigned)(seconds % 60));
+        } else {
+            length += snprintf(words + length, sizeof words - (size_t)length, "%u:%02u left",
+                               (unsigned)(seconds / 60), (unsigned)(seconds % 60));
+        }
+    }
+    draw_line(progress, PROGRESS_CELLS_OF_FRAMES, done / all, words);
 }
 
 void progress_clear(Progress *progress) {
-    if (progress->percent >= 0) {
-        fprintf(stderr, "\r%*s\r", PROGRESS_CELLS + 8, "");
+    if (progress->width > 0) {
+        fprintf(stderr, "\r%*s\r", progress->width, "");
         fflush(stderr);
         progress->percent = -1;
+        progress->width = 0;
     }
 }
 
@@ -146,6 +183,35 @@ int end_output(int result) {
         return EXIT_FAILURE;
     }
     return result;
+}
+
+#define TWICE_MILLISECONDS 300 /* programs around this one may send a signal on that the terminal sent already */
+
+static volatile sig_atomic_t noted, noted_at;
+
+static void note(int number) {
+    const sig_atomic_t now = (sig_atomic_t)((uint64_t)(1000.0 * wall_seconds()) % 1000000000u);
+    signal(number, note); /* some systems forget it */
+    if (noted == 0) {
+        noted_at = now;
+        noted = number;
+    } else if (number == SIGINT && (now < noted_at || now - noted_at > TWICE_MILLISECONDS)) {
+        signal(SIGINT, SIG_DFL);
+        raise(SIGINT);
+    }
+}
+
+void note_signals(void) {
+    const int numbers[] = {SIGINT, SIGTERM};
+    for (size_t i = 0; i < COUNT_OF(numbers); i++) {
+        if (signal(numbers[i], note) == SIG_IGN) {
+            signal(numbers[i], SIG_IGN);
+        }
+    }
+}
+
+int noted_signal(void) {
+    return noted;
 }
 
 void say_at_once(void) {
@@ -216,6 +282,32 @@ void program_folder(char *out, size_t size) {
     } else {
         snprintf(out, size, ".");
     }
+}
+
+char *read_text(const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return NULL;
+    }
+    char  *text = NULL;
+    size_t size = 0, room = 0;
+    int    held = 1;
+    do {
+        room = 2 * room + 4096;
+        char *more = realloc(text, room);
+        held = more != NULL;
+        text = held ? more : text;
+        size += held ? fread(text + size, 1, room - 1 - size, file) : 0;
+    } while (held && !feof(file) && !ferror(file));
+    const int whole = held && !ferror(file), error = errno;
+    fclose(file);
+    if (!whole) {
+        free(text);
+        errno = error;
+        return NULL;
+    }
+    text[size] = '\0';
+    return text;
 }
 
 int make_folder(const char *path) {

@@ -47,11 +47,16 @@ typedef struct Progress {
     int    shown;   /* 0: never drawn */
     int    percent; /* drawn last; -1: nothing drawn yet */
     double begin;   /* of wall_seconds */
+    double drawn;   /* when, by the same clock */
+    int    width;   /* columns that are drawn on */
 } Progress;
 
 Progress progress_begin(int shown);
 void     progress_draw(Progress *progress, double fraction); /* nothing in the first half second */
-void     progress_clear(Progress *progress);                 /* takes the bar off the line */
+/* Frames that are done of all, how many a second, and the time that is left. `made`: since the progress began, with the
+ * part that is done of the next one; `before`: those that were there then. */
+void progress_draw_frames(Progress *progress, double made, uint32_t before, uint32_t all);
+void progress_clear(Progress *progress); /* takes the bar off the line */
 
 /* ---- the process ---- */
 void     say_at_once(void);             /* stdout can be read while the program runs, from a file too; call it first */
@@ -59,8 +64,14 @@ int      end_output(int result);        /* an exit status: EXIT_FAILURE instead 
 double   wall_seconds(void);            /* monotonic; only differences mean something */
 uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */
 int      is_terminal(FILE *stream);
+/* From now on SIGINT, which is Ctrl-C, and SIGTERM are only noted. One that was ignored, as shells start what runs in
+ * the background, stays so. A second Ctrl-C ends the program at once. */
+void     note_signals(void);
+int      noted_signal(void); /* the first one's number; 0: none came */
 void     program_folder(char *out, size_t size); /* its file's; "." where the system does not tell */
 int      make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
+/* All of a file as text, to be given back by free(). NULL with errno, which is ENOENT where there is no file. */
+char    *read_text(const char *path);
 
 #ifdef __cplusplus
 }

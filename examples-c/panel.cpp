@@ -12,6 +12,7 @@
 //   panel/files        scene files, undo and redo             panel/history      the texts for that
 //   panel/sections     windows that scroll                    panel/widgets      a value's widget, message and tip
 //   panel/light_scope  histogram and waveform                 panel/comparison   two settings, and a line between them
+//   panel/colour_legend  the bar beneath false colours
 #include "options.h"
 #include "panel/app.h"
 

@@ -6,6 +6,10 @@
 
 #include <bhr.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A character's cell, in pixels at scale 1: 5 x 9 with one empty column and two empty rows between cells. */
 #define CELL_WIDTH 6u
 #define CELL_HEIGHT 11u
@@ -27,5 +31,9 @@ void picture_write(BhrImage *image, uint32_t x, uint32_t y, uint32_t scale, cons
 
 /* Saves it as FOLDER/NAME. 1, or 0 after a message. */
 int picture_save_into(const BhrImage *image, const char *folder, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -27,7 +27,7 @@ BhrStatus scene_defaults(Scene *scene) {
     scene->spin = 0.0;
     scene->axis[0] = scene->axis[1] = 0.0;
     scene->axis[2] = 1.0;
-    scene->time = 0.0;
+    scene->time = scene->shutter = 0.0;
     scene->effects = BHR_EFFECT_ALL;
     scene->effect_strengths[0] = scene->effect_strengths[1] = scene->effect_strengths[2] = 1.0;
     scene->view = BHR_VIEW_LIGHT;
@@ -107,6 +107,9 @@ BhrStatus scene_read(Scene *scene, BhrContext *context) {
         status = bhr_get_time(context, &scene->time);
     }
     if (status >= 0) {
+        status = bhr_get_shutter(context, &scene->shutter);
+    }
+    if (status >= 0) {
         status = bhr_get_camera(context, &scene->camera);
     }
     if (status >= 0) {
@@ -131,6 +134,9 @@ BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
     }
     if (status >= 0) {
         status = bhr_set_time(context, scene->time);
+    }
+    if (status >= 0) {
+        status = bhr_set_shutter(context, scene->shutter);
     }
     if (status >= 0) {
         status = bhr_set_camera(context, &scene->camera);

@@ -14,7 +14,7 @@ typedef struct Scene {
     double     mass; /* scene lengths */
     double     spin; /* a / M */
     double     axis[3];
-    double     time; /* scene lengths */
+    double     time, shutter; /* scene lengths */
     BhrCamera  camera;
     BhrDisk    disk;
     int        has_disk;

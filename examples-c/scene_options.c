@@ -63,6 +63,8 @@ static const SceneOption TABLE[] = {
 
     {"--no-disk", SCENE_DISK, OPTION_UNFLAG, AT(scene.has_disk), NULL, NULL, "leaves the disk out", NULL},
     {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
+    {"--shutter", SCENE_DISK, OPTION_DOUBLE, AT(shutter), "T", NULL,
+     "in M: how long matter is seen as it moves, at a moment for each sample", NULL},
 
     {"--volume", SCENE_MATTER, OPTION_TEXTS, AT(volumes), VOLUME_VALUE, "4 of them",
      "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B "
@@ -287,6 +289,7 @@ int scene_input_finish(SceneInput *input, BhrContext *context, const Options *op
     }
     if (status >= 0) {
         input->scene.time = input->time * input->scene.mass;
+        input->scene.shutter = input->shutter * input->scene.mass;
         input->scene.camera.eye_distance = input->eye_distance * input->scene.mass;
         status = place_camera(input);
     }

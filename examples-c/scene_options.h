@@ -33,7 +33,7 @@ typedef struct SceneInput {
     BhrPresetMatter  preset_matter;            /* once finished: whichever it has */
     double      distance, azimuth, elevation;  /* about the hole: in M, degrees */
     double      position[3], forward[3];       /* in M; NaN: by those above, and towards the hole */
-    double      time;                          /* in M */
+    double      time, shutter;                 /* in M */
     double      eye_distance;                  /* in M */
     const char *sky_map;                       /* a file; NULL: none */
     const char *lut;                           /* a .cube file; NULL: none */

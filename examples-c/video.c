@@ -28,6 +28,7 @@ int video_close(Video *video) {
 
 #else
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -39,18 +40,28 @@ int video_close(Video *video) {
 
 extern char **environ;
 
-/* ffmpeg, its standard input being `input`. 0, or the number of the error. */
+/* ffmpeg, its standard input being `input`. A terminal sends Ctrl-C to a whole process group: in one of its own ffmpeg
+ * goes on, and ends the file when its input ends. 0, or the number of the error. */
 static int start(pid_t *process, int input, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
-    int                        error = posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_t          attributes;
+    int                        error = posix_spawnattr_init(&attributes);
     if (error != 0) {
         return error;
     }
+    error = posix_spawn_file_actions_init(&actions);
+    if (error != 0) {
+        posix_spawnattr_destroy(&attributes);
+        return error;
+    }
     error = posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+    error = error != 0 ? error : posix_spawnattr_setpgroup(&attributes, 0);
+    error = error != 0 ? error : posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     if (error == 0) {
-        error = posix_spawnp(process, arguments[0], &actions, NULL, arguments, environ);
+        error = posix_spawnp(process, arguments[0], &actions, &attributes, arguments, environ);
     }
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     return error;
 }
 
@@ -90,8 +101,19 @@ static int start_with_pipe(Video *video, char *const arguments[]) {
     return 0;
 }
 
+/* Whether the path ends so, in any case. */
+static int ends_in(const char *path, const char *ending) {
+    const size_t length = strlen(path), most = strlen(ending);
+    for (size_t i = 1; i <= most; i++) {
+        if (i > length || tolower((unsigned char)path[length - i]) != ending[most - i]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 int video_open(Video *video, const char *path, uint32_t width, uint32_t height, double rate) {
-    char   frame_size[32], frame_rate[32];
+    char   frame_size[32], frame_rate[32], keyframes[16];
     size_t length = strlen(path) + sizeof "file:";
     char  *file = malloc(length);
     if (file == NULL) {
@@ -100,16 +122,28 @@ int video_open(Video *video, const char *path, uint32_t width, uint32_t height, 
     }
     snprintf(frame_size, sizeof frame_size, "%ux%u", (unsigned)width, (unsigned)height);
     snprintf(frame_rate, sizeof frame_rate, "%.10g", rate);
+    snprintf(keyframes, sizeof keyframes, "%.0f", rate < 1.0 ? 1.0 : rate > 600.0 ? 600.0 : rate);
     /* "file:" keeps ffmpeg from reading a protocol or an option into the name. Most players want 4:2:0; the primaries
-     * of sRGB are those of Rec. 709. */
+     * of sRGB are those of Rec. 709. Each second begins with a keyframe. */
     snprintf(file, length, "file:%s", path);
-    char *arguments[] = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-                         "-f", "rawvideo", "-pixel_format", "rgba", "-video_size", frame_size,
-                         "-framerate", frame_rate, "-i", "pipe:0",
-                         "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
-                         "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
-                         file, NULL};
-    int   error = start_with_pipe(video, arguments);
+    char *arguments[32] = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                           "-f", "rawvideo", "-pixel_format", "rgba", "-video_size", frame_size,
+                           "-framerate", frame_rate, "-i", "pipe:0",
+                           "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+                           "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
+                           "-g", keyframes, "-flush_packets", "1"}; /* those behind are NULL */
+    size_t count = 0;
+    while (arguments[count] != NULL) {
+        count++;
+    }
+    /* MP4's index comes last, and without it nothing plays: in fragments, one a second, the file is whole up to the
+     * last one, even if ffmpeg was killed. */
+    if (ends_in(path, ".mp4") || ends_in(path, ".mov") || ends_in(path, ".m4v")) {
+        arguments[count++] = "-movflags";
+        arguments[count++] = "+frag_keyframe+empty_moov+default_base_moof";
+    }
+    arguments[count] = file;
+    int error = start_with_pipe(video, arguments);
     free(file);
     if (error == ENOENT) {
         fprintf(stderr, "cannot make a video: ffmpeg was not found; install it, or make pictures without --video\n");

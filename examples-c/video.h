@@ -12,7 +12,9 @@ typedef struct Video {
 } Video;
 
 /* Starts ffmpeg, which overwrites `path` with width x height frames (both even), `rate` of them a second; the ending of
- * the path decides the kind of file. 1, or 0 after a message, such as that there is no ffmpeg. */
+ * the path decides the kind of file. Ctrl-C in a terminal does not reach ffmpeg; when this program ends, however it
+ * does, ffmpeg ends the file. Should ffmpeg be killed as well, .mp4, .mov and .m4v play but for the last seconds. 1,
+ * or 0 after a message, such as that there is no ffmpeg. */
 int video_open(Video *video, const char *path, uint32_t width, uint32_t height, double rate);
 
 /* Adds a packed RGBA8_SRGB frame of the video's size. 1, or 0 after a message. */

@@ -242,6 +242,15 @@ static void follow_size(Viewer *v) {
     }
 }
 
+/* The windows over this one go along. */
+static void take_overlays_along(Viewer *v) {
+    const int has_focus = !glfwGetWindowAttrib(v->window, GLFW_ICONIFIED) &&
+                          (glfwGetWindowAttrib(v->window, GLFW_FOCUSED) || overlay_has_focus(&v->keys.overlay) ||
+                           overlay_has_focus(&v->bar.overlay));
+    bar_window_follow(&v->bar, v->window, has_focus);
+    text_window_follow(&v->keys, v->window, bar_window_height(&v->bar), has_focus);
+}
+
 /* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. Before
  * the next frame there is a turn without one, so that the loop can wait for the display. */
 static void turn(Viewer *v) {
@@ -259,7 +268,7 @@ static void turn(Viewer *v) {
             start_frame(v);
         }
     }
-    text_window_follow(&v->keys, v->window);
+    take_overlays_along(v);
     viewer_watch(v);
     viewer_update_title(v, is_moving(v));
 }
@@ -271,14 +280,26 @@ static void wait_for_frame(Viewer *v) {
     }
 }
 
+/* The bar that the last frame's colours need. */
+static void show_bar(Viewer *v) {
+    ColourBar bar;
+    colour_bar_of(v->good.view, &v->good.film, &bar);
+    if (v->frames > 0 && bar_window_set(&v->bar, v->window, &bar)) {
+        input_attach(v, v->bar.overlay.window);
+    }
+}
+
 /* Until the window is closed, or everything is shown. */
 static void show(Viewer *v) {
     v->now = wall_seconds();
     while (!glfwWindowShouldClose(v->window) && !v->broken && !is_complete(v)) {
         handle_events(v);
         turn(v);
+        show_bar(v);
     }
     if (glfwWindowShouldClose(v->window)) {
+        text_window_hide(&v->keys);
+        bar_window_hide(&v->bar);
         glfwHideWindow(v->window); /* a user who has closed it need not see the end of a long frame */
     }
     wait_for_frame(v);
@@ -292,6 +313,7 @@ static void hold(Viewer *v, double seconds) {
     while (!glfwWindowShouldClose(v->window) && !v->broken && wall_seconds() < end) {
         handle_events(v);
         turn(v);
+        show_bar(v);
     }
 }
 
@@ -332,6 +354,8 @@ static GLFWwindow *open_window(const Settings *s) {
         return NULL;
     }
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API); /* bhr brings its own graphics */
+    /* On a full screen a click on what lies over the window may take the keyboard from it for a moment. */
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
     const int      sized = s->size[0] != 0;
     const uint32_t width = sized ? s->size[0] : 1280, height = sized ? s->size[1] : 720;
     /* A size that was asked for is meant in pixels. */
@@ -466,7 +490,7 @@ static int start(Viewer *v, const Settings *s) {
     glfwSetFramebufferSizeCallback(v->window, on_framebuffer_size);
     glfwSetWindowRefreshCallback(v->window, on_refresh);
     glfwSetWindowCloseCallback(v->window, on_close);
-    input_attach(v);
+    input_attach(v, v->window);
     return 1;
 }
 
@@ -476,6 +500,7 @@ static void finish(Viewer *v) {
     recorder_cancel(&v->recorder);
     picture_end(&v->picture);
     text_window_hide(&v->keys);
+    bar_window_hide(&v->bar);
     bhr_surface_destroy(v->surface);
     bhr_context_destroy(v->context);
     bhr_context_destroy(v->tester);

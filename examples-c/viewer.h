@@ -6,6 +6,7 @@
 
 #include "glfw_window.h"
 #include "scene.h"
+#include "viewer_bar.h"
 #include "viewer_camera.h"
 #include "viewer_frame.h"
 #include "viewer_keys.h"
@@ -48,6 +49,7 @@ typedef struct Viewer {
     Recorder recorder;
     PictureJob picture;
     TextWindow keys;     /* shows what keys do */
+    BarWindow  bar;      /* shows what false colours mean */
     int        quitting; /* the viewer ends when picture and film are saved */
 
     Mouse   mouse;

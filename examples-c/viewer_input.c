@@ -445,19 +445,19 @@ static void attach(Viewer *v, GLFWwindow *window);
 
 /* Over the window; where that cannot be, on the terminal. */
 static void show_keys(Viewer *v, double unused) {
-    static char lines[COUNT_OF(KEYS)][LINE];
-    const char *list[COUNT_OF(KEYS)];
+    static char        lines[COUNT_OF(KEYS)][LINE];
+    static const char *list[COUNT_OF(KEYS)];
     (void)unused;
-    if (v->keys.window != NULL) {
-        text_window_hide(&v->keys);
+    if (text_window_is_shown(&v->keys)) {
+        glfwSetWindowShouldClose(v->keys.overlay.window, GLFW_TRUE);
         return;
     }
     for (size_t i = 0; i < COUNT_OF(KEYS); i++) {
         key_line(&KEYS[i], lines[i]);
         list[i] = lines[i];
     }
-    if (text_window_show(&v->keys, v->window, list, COUNT_OF(KEYS))) {
-        attach(v, v->keys.window); /* a click may give it the keyboard */
+    if (text_window_show(&v->keys, v->window, list, COUNT_OF(KEYS), bar_window_height(&v->bar))) {
+        attach(v, v->keys.overlay.window); /* a click may give it the keyboard */
     } else {
         input_print_keys();
     }
@@ -544,6 +544,9 @@ static void on_button(GLFWwindow *window, int button, int action, int mods) {
         v->mouse.orbits = pressed;
     } else if (button == GLFW_MOUSE_BUTTON_RIGHT) {
         v->mouse.looks = pressed;
+        if (window != v->window) {
+            return; /* the cursor is not this one's to take */
+        }
         /* Without an edge of the screen to stop it. */
         glfwSetInputMode(window, GLFW_CURSOR, pressed ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
         glfwGetCursorPos(window, &v->mouse.x, &v->mouse.y);
@@ -553,7 +556,7 @@ static void on_button(GLFWwindow *window, int button, int action, int mods) {
 static void on_cursor(GLFWwindow *window, double x, double y) {
     Viewer *v = glfwGetWindowUserPointer(window);
     int     width, height;
-    glfwGetWindowSize(window, &width, &height);
+    glfwGetWindowSize(v->window, &width, &height);
     double dx = (x - v->mouse.x) / fmax(height, 1), dy = (y - v->mouse.y) / fmax(height, 1);
     v->mouse.x = x;
     v->mouse.y = y;
@@ -579,9 +582,9 @@ static void on_wheel(GLFWwindow *window, double dx, double dy) {
     }
 }
 
-void input_attach(Viewer *v) {
-    attach(v, v->window);
-    glfwSetMouseButtonCallback(v->window, on_button);
-    glfwSetCursorPosCallback(v->window, on_cursor);
-    glfwSetScrollCallback(v->window, on_wheel);
+void input_attach(Viewer *v, GLFWwindow *window) {
+    attach(v, window);
+    glfwSetMouseButtonCallback(window, on_button);
+    glfwSetCursorPosCallback(window, on_cursor);
+    glfwSetScrollCallback(window, on_wheel);
 }

@@ -6,8 +6,8 @@
 
 #include "viewer.h"
 
-/* Hears a window's keys and mouse from now on; the window's user pointer must be the viewer. */
-void input_attach(Viewer *viewer);
+/* Hears the keys and the mouse of the viewer's window, or of one that lies over it, from now on. */
+void input_attach(Viewer *viewer, GLFWwindow *window);
 
 /* Does for keys that had to wait for the context. Call it while no frame is rendered. */
 void input_act_late(Viewer *viewer);

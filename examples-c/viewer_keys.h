@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* viewer_keys.h -- text over the viewer's window: bhr presents frames into that by itself and leaves a host no place to
- * draw, so the text has a small window of its own that lies on it, without a frame, and goes along. OpenGL copies its
- * pixels there. Knows no scene and no keys. */
+/* viewer_keys.h -- text over the viewer's window, in an overlay at its top-left corner. Knows no scene and no keys. */
 #ifndef EXAMPLES_VIEWER_KEYS_H
 #define EXAMPLES_VIEWER_KEYS_H
 
-#include "glfw_window.h"
+#include "viewer_overlay.h"
 
 #include <stddef.h>
 
+/* All zero before it is shown. */
 typedef struct TextWindow {
-    GLFWwindow *window; /* NULL: not shown */
-    BhrImage    image;  /* what it shows, the lowest row first */
-    double      drawn_at;  /* by glfwGetTime */
-    int         had_focus; /* it or the window below; gone with both */
+    Overlay            overlay;
+    const char *const *lines; /* the caller's, as long as they are shown */
+    size_t             count;
+    size_t             columns; /* that they stand in */
+    uint32_t           scale;
 } TextWindow;
 
-/* Shows lines of text over the top-left corner of a window, as large as it has room for, in one column or more. 1, or 0
- * where that is not possible, after GLFW's error callback heard why. */
-int text_window_show(TextWindow *text, GLFWwindow *below, const char *const *lines, size_t count);
+int text_window_is_shown(const TextWindow *text);
 
-/* Follows the window below; hides the text when neither of the two has the keyboard any more. Call it in each turn of
- * the loop. */
-void text_window_follow(TextWindow *text, GLFWwindow *below);
+/* Shows lines of text over the window below, as large as it has room for beside `foot` screen units at its foot, in one
+ * column or more. 1, or 0 where that is not possible, after GLFW's error callback heard why. */
+int text_window_show(TextWindow *text, GLFWwindow *below, const char *const *lines, size_t count, int foot);
+
+/* Follows the window below and its size; hides the text when the program has lost the keyboard, of which has_focus
+ * tells, or its window is to be closed. In each turn of the loop, also from callbacks; overlay_tidy is the caller's. */
+void text_window_follow(TextWindow *text, GLFWwindow *below, int foot, int has_focus);
 
 /* Takes the text away, if it is shown. */
 void text_window_hide(TextWindow *text);

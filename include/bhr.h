@@ -532,7 +532,7 @@ BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, dou
 /** For depth of field: moves a PERSPECTIVE or FRUSTUM camera to place index (from 0) of count (1 to 65536) on a thin
  * lens of the diameter aperture (>= 0), and makes it a FRUSTUM one in which what lies at the distance focus (> 0)
  * ahead keeps its place. Frames from all places, each made from the same camera, add up by bhr_accumulate, with equal
- * weights (docs/colour-and-film.md). aperture and focus are scene lengths; aspect (> 0) is the frame's width / height.
+ * weights (docs/motion-blur.md). aperture and focus are scene lengths; aspect (> 0) is the frame's width / height.
  * Errors: INVALID_ARGUMENT also for another projection, and for a struct_size without tan_up. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_camera_through_lens(BhrCamera *camera, double aperture, double focus, double aspect,
                                                 uint32_t index, uint32_t count);
@@ -1198,12 +1198,22 @@ BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 /** Reads the time as it is set, scene lengths. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_time(const BhrContext *context, double *out_time);
 
+/** Sets how long the shutter is open, scene lengths of time, half of it before the scene's time, 0 .. 1e300; default 0:
+ * frames show one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments, evenly over
+ * the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as they move; one
+ * sample sees the middle. Camera and hole stay. Beyond 1000 M it counts as 1000 M. docs/motion-blur.md.
+ * Errors: INVALID_ARGUMENT for another time. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_set_shutter(BhrContext *context, double shutter);
+
+/** Reads how long the shutter is open as it is set, scene lengths. @since 0.2.0 */
+BHR_NODISCARD BhrStatus bhr_get_shutter(const BhrContext *context, double *out_shutter);
+
 /* ---- presets: named looks ---- */
 
 /** A named look: values for all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky, which
- * setters can then change. Hole, camera, hot spots, time, view, quality, region, and the sky's orientation, seed
- * and map stay as they are: a host that shows its own map sets BHR_SKY_MAP again. docs/presets.md has the tables of
- * the values. @since 0.2.0 */
+ * setters can then change. Hole, camera, hot spots, time, shutter, view, quality, region, and the sky's orientation,
+ * seed and map stay as they are: a host that shows its own map sets BHR_SKY_MAP again. docs/presets.md has the tables
+ * of the values. @since 0.2.0 */
 typedef int32_t BhrPreset;
 
 /** The default: a golden disk with structure and soft edges, its approaching side nearly white, and glare. */
@@ -1281,9 +1291,9 @@ typedef int32_t BhrVolumeResolution;
 typedef struct BhrQuality {
     uint32_t struct_size; /**< sizeof(BhrQuality). */
     BhrMethod method;     /**< BHR_METHOD_*. Default AUTO. */
-    /** Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
-     * they lie evenly in the pixel. Views other than BHR_VIEW_LIGHT take one. Pixels that an edge runs through get
-     * more rays in any case. */
+    /** Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a
+     * CUBE they lie evenly in the pixel; with bhr_set_shutter they are moments. Views other than BHR_VIEW_LIGHT
+     * take one. Pixels that an edge runs through get more rays in any case. */
     uint32_t samples_per_pixel;
     /** Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;

@@ -21,6 +21,7 @@ const SHORT: ReadonlyMap<string, string> = new Map([
     ["effects", "effects"],
     ["disk", "disk"],
     ["time", "time"],
+    ["shutter", "shutter"],
 ]);
 
 /** Attributes that say how the element behaves. */

@@ -32,6 +32,8 @@ export interface Settings {
     preset_matter?: Exclude<PresetMatter, "auto"> | undefined;
     /** bhr_set_time. */
     time?: number | undefined;
+    /** bhr_set_shutter. */
+    shutter?: number | undefined;
     effects?: readonly Effect[] | undefined;
     /** Of the Doppler shift, gravity's shift and beaming, 0 .. 1. */
     effect_strengths?: Vector | undefined;
@@ -43,7 +45,7 @@ export interface Settings {
     volumes?: readonly Partial<Volume>[] | undefined;
     hot_spots?: readonly Partial<HotSpot>[] | undefined;
     sky?: Partial<Sky> | undefined;
-    film?: Partial<Film> | undefined;
+    film?: Partial<Film & { grain_moves: boolean }> | undefined;
     quality?: Partial<Quality> | undefined;
     region?: Region | undefined;
 }

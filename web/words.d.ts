@@ -147,8 +147,9 @@ export type Motion =
 
 /**
  * A named look: values for all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky, which
- * setters can then change. Hole, camera, hot spots, time, view, quality, region, and the sky's orientation, seed and
- * map stay as they are: a host that shows its own map sets "map" again. docs/presets.md has the tables of the values.
+ * setters can then change. Hole, camera, hot spots, time, shutter, view, quality, region, and the sky's orientation,
+ * seed and map stay as they are: a host that shows its own map sets "map" again. docs/presets.md has the tables of the
+ * values.
  */
 export type Preset =
     /** The default: a golden disk with structure and soft edges, its approaching side nearly white, and glare. */

@@ -112,6 +112,7 @@ void App::take_picture(FinishedFrame &&frame, double now) {
     auto_ev_ = frame.stats.auto_ev;
     performance_.finished(frame.stats, frame.submitted);
     to_show_ = frame.submitted;
+    bar_ = frame.bar;
     queue_.reuse(picture_.take(std::move(frame.pixels)));
     pictures_++;
 }
@@ -272,14 +273,8 @@ void App::draw(double now, Pixels *copy) {
     history_.before(scene_, ImGui::IsAnyItemActive() || ImGui::IsAnyMouseDown(), now);
     files_.key(window_.shortcut(), scene_, history_);
     {
-        char              news[96];
         const FixedWindow window(sections_, "Picture", layout.picture, true);
-        const BhrImage   &image = picture_.pixels().image;
-        const double rate = performance_.frames_per_second();
-        std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
-                      rate);
-        input = picture_.draw(window_.pixel_ratio(), options_.bare != 0, news, error_,
-                              comparison_.shown() && options_.bare == 0 ? &comparison_.picture() : nullptr);
+        input = draw_picture();
     }
     move_camera(input);
     if (picture_.width() > 0 && !options_.bare) {
@@ -300,6 +295,30 @@ void App::draw(double now, Pixels *copy) {
     if (options_.verbose != 0) {
         say(input);
     }
+}
+
+// The picture, and beneath it the bars of its colours. Their room is there as soon as the scene has false colours; they
+// themselves are there once the picture has.
+Picture::Input App::draw_picture() {
+    const bool      bare = options_.bare != 0, parted = comparison_.shown() && !bare;
+    const BhrImage &image = picture_.pixels().image;
+    const ImVec2    corner = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const double    rate = performance_.frames_per_second();
+    char            news[96];
+    std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
+                  rate);
+    ColourLegend legend{comparison_.bar(), {}, parted};
+    colour_bar_of(scene_.view(), &scene_.film(), &legend.b);
+    const float          foot = bare ? 0.0F : legend.height(room);
+    const Picture::Input input = picture_.draw(window_.pixel_ratio(), bare, news, error_,
+                                               parted ? &comparison_.picture() : nullptr, foot);
+    legend.b = bar_;
+    legend_ = ColourLegend{};
+    if (foot > 0.0F && legend.height(room) == foot) {
+        legend.draw({corner.x, corner.y + room.y - foot}, {room.x, foot});
+        legend_ = legend;
+    }
+    return input;
 }
 
 void App::draw_panels(const Layout &layout) {
@@ -436,6 +455,9 @@ bool App::finished(double now) {
 int App::save() {
     Pixels window;
     draw(glfwGetTime(), &window);
+    if (BhrImage file = picture_.pixels().image; file.pixels != nullptr) {
+        colour_bar_put(&file, &bar_); // the window shows no picture any more
+    }
     const struct {
         const char     *path;
         const BhrImage *image;
@@ -503,6 +525,11 @@ void App::say(const Picture::Input &input) {
     if (light_scope_.number() != said_light_) {
         std::printf("light above %d: %.4f auto %.4f\n", LightCounts::BRIGHT, light_scope_.counts().bright(), auto_ev_);
         said_light_ = light_scope_.number();
+    }
+    const std::string colours = std::string(legend_.title_of_a()) + " | " + legend_.title_of_b();
+    if (colours != said_colours_) {
+        std::printf("colours %s\n", colours.c_str());
+        said_colours_ = colours;
     }
     say_places();
     if (pictures_ != said_pictures_) {

@@ -4,6 +4,7 @@
 #ifndef PANEL_APP_H
 #define PANEL_APP_H
 
+#include "colour_legend.h"
 #include "comparison.h"
 #include "files.h"
 #include "inspector.h"
@@ -63,6 +64,7 @@ private:
     void   recover(double now);
     void   inspect();
     void   draw(double now, Pixels *copy);
+    Picture::Input draw_picture();
     void   draw_panels(const Layout &layout);
     void   draw_instruments(const Layout &layout);
     void   draw_instrument_tabs(const Layout &layout);
@@ -84,6 +86,8 @@ private:
     BhrAdapterInfo adapter_{};
     Picture        picture_;
     Comparison     comparison_;
+    ColourBar      bar_{};            // of the picture's colours
+    ColourLegend   legend_;           // as the window shows it
     LightScope     light_scope_;
     SettingsPanel  settings_;
     History        history_;
@@ -121,7 +125,7 @@ private:
     uint32_t said_pictures_ = 0, said_light_ = 0;
     unsigned said_compared_ = 0;
     float    said_wipe_ = 0.5F;
-    std::string said_places_;
+    std::string said_places_, said_colours_;
 };
 
 #endif

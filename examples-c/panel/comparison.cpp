@@ -103,6 +103,7 @@ bool Comparison::collect() {
         if (frame.result.ok()) {
             const BhrImage &image = frame.pixels.image;
             picture_.upload(image.pixels, image.width, image.height, true);
+            bar_ = frame.bar;
             count_++;
         }
         any = true;

@@ -20,6 +20,8 @@ public:
 
     bool           shown() const { return shows_ && !picture_.empty(); }
     const Texture &picture() const { return picture_; }
+    // The meaning of its colours.
+    const ColourBar &bar() const { return bar_; }
     bool           in_flight() const { return queue_ != nullptr && queue_->in_flight() > 0; }
     // All of A's pictures that were taken.
     unsigned       count() const { return count_; }
@@ -46,6 +48,7 @@ private:
     Wanted   submitted_;
     double   time_ = -1.0;
     Texture  picture_;
+    ColourBar bar_{};
     unsigned count_ = 0;
 };
 

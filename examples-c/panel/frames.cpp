@@ -25,8 +25,11 @@ Result FrameQueue::submit(FrameKind kind, BhrFormat format, uint32_t width, uint
     pixels.image.pixels = pixels.bytes.data();
     pixels.image.byte_size = pixels.bytes.size();
 
-    BhrJob      *job = nullptr;
-    const Result result = result_of(bhr_render_image_async(context_, &pixels.image, &job));
+    BhrJob *job = nullptr;
+    Result  result = result_of(colour_bar_of_frames(context_, &next.frame.bar));
+    if (result.ok()) {
+        result = result_of(bhr_render_image_async(context_, &pixels.image, &job));
+    }
     if (result.ok()) {
         next.job.reset(job);
         // Moving a vector leaves its elements where they are, so the job's target stays valid.

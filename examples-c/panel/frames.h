@@ -4,6 +4,7 @@
 #ifndef PANEL_FRAMES_H
 #define PANEL_FRAMES_H
 
+#include "../colour_bar.h"
 #include "handles.h"
 
 #include <array>
@@ -29,6 +30,7 @@ struct FinishedFrame {
     BhrFrameStats stats{};
     double        submitted = 0.0;    // on the caller's clock
     uint64_t      scene_version = 0;  // the caller's, as given to submit
+    ColourBar     bar{};              // the meaning of its colours, if they are false ones
 };
 
 class FrameQueue {

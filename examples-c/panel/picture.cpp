@@ -57,10 +57,10 @@ void Picture::draw_wipe(const Texture &other, ImVec2 end) const {
 }
 
 Picture::Input Picture::draw(double pixel_ratio, bool bare, const std::string &news, const std::string &error,
-                             const Texture *other) {
+                             const Texture *other, float foot) {
     Input        input;
     ImVec2       room = ImGui::GetContentRegionAvail();
-    room = {std::max(room.x, 1.0F), std::max(room.y, 1.0F)};
+    room = {std::max(room.x, 1.0F), std::max(room.y - foot, 1.0F)};
     corner_ = ImGui::GetCursorScreenPos();
     width_ = static_cast<uint32_t>(std::max(1L, std::lround(static_cast<double>(room.x) * pixel_ratio)));
     height_ = static_cast<uint32_t>(std::max(1L, std::lround(static_cast<double>(room.y) * pixel_ratio)));

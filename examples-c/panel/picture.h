@@ -19,8 +19,9 @@ public:
     // Takes the pixels over; gives back those that it had.
     Pixels take(Pixels &&pixels);
     // Into the rest of the current ImGui window. bare: nothing but the picture. other: a picture that is shown left of
-    // a line, which the mouse can drag; NULL: none.
-    Input draw(double pixel_ratio, bool bare, const std::string &news, const std::string &error, const Texture *other);
+    // a line, which the mouse can drag; NULL: none. foot: the height that is left free beneath the picture.
+    Input draw(double pixel_ratio, bool bare, const std::string &news, const std::string &error, const Texture *other,
+               float foot);
 
     const Pixels &pixels() const { return pixels_; }
     // Its place in the window, in pixels; 0 before it was first drawn.

@@ -175,6 +175,14 @@ Result Scene::set_time(double time) {
     return result;
 }
 
+Result Scene::set_shutter(double duration) {
+    const Result result = accepted(bhr_set_shutter(context_, duration), false);
+    if (result.ok()) {
+        shutter_ = duration;
+    }
+    return result;
+}
+
 // The orbit on which a camera is there.
 static Orbit orbit_through(const double position[3]) {
     const Vec3   place{position[0], position[1], position[2]};
@@ -225,6 +233,7 @@ Result Scene::loaded(BhrStatus status) {
         orbit_ = orbit_through(camera_.position);
         bhr_get_view(context_, &view_);
         bhr_get_time(context_, &time_);
+        bhr_get_shutter(context_, &shutter_);
         preset_ = NO_PRESET;
         lut_path_.clear(); // the text's is in force, whose path no call tells
     }

@@ -50,6 +50,7 @@ public:
     double            effect_strength(uint32_t effect) const; // of one of GRADED_EFFECTS
     const std::string &lut_path() const { return lut_path_; } // "": none that was set here
     double            time() const { return time_; }
+    double            shutter() const { return shutter_; }
     Chart             chart() const { return Chart(hole_.axis); }
 
     // Numbers that grow with every change: of anything a frame shows, and of rays and what they meet only.
@@ -77,6 +78,7 @@ public:
     Result set_effect_strength(uint32_t effect, double strength);
     Result set_lut_file(const char *path); // "": none
     Result set_time(double time);
+    Result set_shutter(double duration);
 
     // Moves the camera along its world line, and the scene's time with it.
     Result advance_camera(double proper_time);
@@ -110,7 +112,7 @@ private:
     uint32_t    effects_ = BHR_EFFECT_ALL;
     double      effect_strengths_[std::size(GRADED_EFFECTS)] = {1.0, 1.0, 1.0};
     std::string lut_path_;
-    double      time_ = 0.0;
+    double      time_ = 0.0, shutter_ = 0.0;
     uint64_t    version_ = 0, geometry_version_ = 0;
 };
 

@@ -265,6 +265,11 @@ void SettingsPanel::time(Scene &scene, Clock &clock) {
            [&](double time) { return scene.set_time(time); },
            "the scene's time, which matter moves by\nunit: scene lengths, by the speed of light\n\n"
            "bhr_set_time in bhr.h");
+    number("shutter", scene.shutter(), 0.0, 20.0 * scene.hole().mass, "%.2f", false,
+           [&](double duration) { return scene.set_shutter(duration); },
+           "how long the shutter is open: matter that moves is seen at as many moments as a pixel has samples\n"
+           "unit: scene lengths; 0: a moment\n\n"
+           "bhr_set_shutter in bhr.h; docs/motion-blur.md");
 }
 
 void SettingsPanel::draw(Scene &scene, const BhrHoleInfo &numbers, FrameSettings &frames, Clock &clock,

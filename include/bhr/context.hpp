@@ -185,6 +185,14 @@ class Context {
     }
     /// bhr_get_time.
     Result<double> time() const { return detail::ask(0.0, [&](double &to) { return bhr_get_time(get(), &to); }); }
+    /// bhr_set_shutter: in scene lengths of time.
+    Result<void> set_shutter(double shutter) {
+        return detail::call([&] { return bhr_set_shutter(get(), shutter); });
+    }
+    /// bhr_get_shutter.
+    Result<double> shutter() const {
+        return detail::ask(0.0, [&](double &to) { return bhr_get_shutter(get(), &to); });
+    }
     Result<void> set_preset(Preset preset) {
         return detail::call([&] { return bhr_set_preset(get(), static_cast<BhrPreset>(preset)); });
     }

@@ -80,6 +80,10 @@ def test_what_moves_in_a_scene(ctx):
     assert ctx.pictures == bhr.Pictures(640, 1080, 96, 24.0)
     ctx.at(2.0)
     assert ctx.time == 5.0
+    ctx.shutter = 0.5
+    assert ctx.shutter == 0.5
+    with pytest.raises(bhr.Error, match="shutter"):
+        ctx.shutter = -1.0
 
 
 def test_a_film(tmp_path):

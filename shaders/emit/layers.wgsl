@@ -11,6 +11,7 @@
 #import emit/flow
 #import emit/glow
 #import emit/medium
+#import emit/moment
 #import emit/shape
 #import geodesic/geodesic
 #import shared/blackbody
@@ -49,8 +50,9 @@ var<private> last_slow: Slow;
 // A ray begins at `observer`.
 fn begin_layers(c: Constants, observer: State) {
     last_end = -1e9;
+    seen_later = moment;
     if DELAY {
-        seen_later = frame.matter_delay + observer.delay + delay_boundary(c, observer.u, observer.du);
+        seen_later += frame.matter_delay + observer.delay + delay_boundary(c, observer.u, observer.du);
     }
 }
 
@@ -84,7 +86,7 @@ fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow
         let offsets = chart_offsets(c, u);
         let azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x)
             - offsets.x;
-        var later = 0.0;
+        var later = seen_later;
         if DELAY {
             // The retardation, whose part at the observer is that of all places.
             later = seen_later - delay_boundary(c, u, du) - cubic_at(course.delay, x) - clock_offset(c, u)

@@ -3,6 +3,7 @@
 
 #import constants
 #import emit/bands
+#import emit/moment
 #import emit/streaks
 #import records/record
 #import shared/frame
@@ -32,7 +33,7 @@ fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint)
     for (var k = 0u; k < shown.count; k += 1u) {
         let number = shown.first + i32(k);
         let band = frame.bands[band_index(number, frame.first_band)];
-        let alive = generations(band, frame.turbulence_delay - at.delay);
+        let alive = generations(band, frame.turbulence_delay - at.delay + moment);
         for (var old = 0u; old < alive.count; old += 1u) {
             let weight = select(alive.weights.x, alive.weights.y, old == 1u);
             let age = alive.young + f32(old) * band.spacing;

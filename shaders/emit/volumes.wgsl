@@ -13,6 +13,7 @@
 #import emit/layers
 #import shared/matter
 #import emit/medium
+#import emit/moment
 #import emit/shape
 #import emit/shift
 #import geodesic/geodesic
@@ -324,7 +325,7 @@ fn coefficients_at(
         let r = 1.0 / u;
         let du = quintic_slope(course.u, x) / h;
         var azimuth = 0.0;
-        var later = 0.0;
+        var later = moment;
         // Azimuth and time in Doran's chart.
         var rain = vec2<f32>(0.0);
         if STRUCTURE || (SHAPES & ((1u << SHAPE_SPOT) | (1u << SHAPE_FREE_SPOT))) != 0u {
@@ -333,12 +334,10 @@ fn coefficients_at(
             azimuth = arctan2(n.y, n.x) + cubic_at(course.drag, x) - offsets.x;
             if DELAY {
                 let integral = cubic_at(course.delay, x) - observer.delay + offsets.y;
-                later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
+                later += frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
             }
             if (SHAPES & (1u << SHAPE_FREE_SPOT)) != 0u {
                 rain = vec2<f32>(azimuth, later) + rain_offsets(c, u);
-                // All of it is where it is at the frame's time if light does not take any.
-                rain.y = select(0.0, rain.y, DELAY);
             }
         }
         for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
@@ -347,7 +346,8 @@ fn coefficients_at(
             var centre = SpotCentre();
             var even = 0.0;
             if is_free {
-                centre = spot_centre(rain.y, matter);
+                // All of it is where it is at the sample's time if light does not take any.
+                centre = spot_centre(select(moment * matter.angular_velocity, rain.y, DELAY), matter);
                 even = free_density(r, cosine, rain.x, centre, matter);
             } else {
                 even = density_at(r, cosine, azimuth, later, matter);

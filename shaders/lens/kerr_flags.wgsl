@@ -124,7 +124,7 @@ fn sky_is_good() -> bool {
 fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let margin = margin_of(p, k);
     let near = nearest_u();
-    let far = frame.plane_u.x / 1.5;
+    let far = frame.plane_u.x / DISK_REACH_OUTWARDS;
     let reach = far * select(1.0, KERR_NARROW_REACH, order > 0u);
     let reach_inwards = select(near, kerr_reach_inwards(near), order > 0u);
     if near < far || p.low[k] - margin > reach_inwards || p.high[k] + margin < reach {
@@ -150,7 +150,7 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
 
 // Greatest 1/r of crossings that pixels beside the disk's inner edge look for (reached_u of src/scene/refine.rs).
 fn nearest_u() -> f32 {
-    return frame.plane_u.y * 1.15;
+    return frame.plane_u.y * DISK_REACH_INWARDS;
 }
 
 // By how much values may lie beyond those of the nodes.

@@ -205,7 +205,7 @@ fn next_looked_up() -> Crossing {
         let lane = select(order % 4u, 0u, PATTERN);
         let u = at.value[lane];
         lookup.on_edge = lookup.on_edge || near_disk_edge(u, looked_up_change(at, lane));
-        if is_wanted(u) && u <= kerr_reach_inwards(1.15 * frame.plane_u.y) {
+        if is_wanted(u) && u <= kerr_reach_inwards(frame.plane_u.y * DISK_REACH_INWARDS) {
             crossing.u = u;
             crossing.order = order;
         }

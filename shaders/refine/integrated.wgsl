@@ -6,6 +6,7 @@
 #import camera/chart
 #import camera/observer
 #import camera/projection
+#import emit/moment
 #import emit/occluder
 #import emit/shown_part
 #import emit/volumes
@@ -76,6 +77,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
         kept_given = 0u;
     }
     let place = pixel_place(id);
+    moment = pass_.moment;
     if OCCLUDED {
         set_occluder(place);
     }

@@ -5,6 +5,7 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/moment
 #import emit/occluder
 #import emit/plane
 #import emit/shift
@@ -62,6 +63,7 @@ fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32> {
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
     let seen = has_look_direction(pixel_place(id));
     if SHOWS_LIGHT {
+        moment = pass_.moment;
         if OCCLUDED {
             set_occluder(pixel_place(id));
         }

@@ -32,7 +32,8 @@ struct Matter {
     // Numbers of the law of motion. KEPLERIAN: sub_keplerian, infall; ANGULAR_MOMENTUM: l0, 0; RIGID: angular velocity,
     // 0; OUTFLOW: speed, base; FREE: rain time of the first place less that of the frame, and time to the last one, M.
     law: vec2<f32>,
-    // A spot's azimuth at the frame's time, and its angular velocity towards +phi, rad/M.
+    // A spot's azimuth at the frame's time, and its angular velocity towards +phi, rad/M; of one in free fall the
+    // second is FreeCentre::pace of src/emit/free_spot.rs.
     azimuth: f32,
     angular_velocity: f32,
     // Absorption per M at density 1; temperature, K, at the reference radius, and the power of r that it falls by.

@@ -27,6 +27,9 @@ struct Pass {
     // its rows, in words.
     pixels_first: u32,
     pixels_row: u32,
+    // The time of this sample less that of the frame, M (emit/moment.wgsl).
+    moment: f32,
+    unused: u32,
 }
 
 // The shift from this sample to the place looked at, pixels: 0 but where refine/refine.wgsl spreads samples over a

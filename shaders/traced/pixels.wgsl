@@ -6,6 +6,7 @@
 #import camera/chart
 #import camera/observer
 #import camera/projection
+#import emit/moment
 #import emit/occluder
 #import emit/shown_part
 #import emit/volumes
@@ -123,6 +124,7 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     disk_orders = 0u;
     beside_orders = 0u;
     plane_u = 0.0;
+    moment = pass_.moment;
     if PARTS {
         begin_medium(c, begin.state, 1u);
     }

@@ -297,7 +297,7 @@ pub unsafe extern "C" fn bhr_camera_orbit(
 /// For depth of field: moves a PERSPECTIVE or FRUSTUM camera to place index (from 0) of count (1 to 65536) on a thin
 /// lens of the diameter aperture (>= 0), and makes it a FRUSTUM one in which what lies at the distance focus (> 0)
 /// ahead keeps its place. Frames from all places, each made from the same camera, add up by bhr_accumulate, with equal
-/// weights (docs/colour-and-film.md). aperture and focus are scene lengths; aspect (> 0) is the frame's width / height.
+/// weights (docs/motion-blur.md). aperture and focus are scene lengths; aspect (> 0) is the frame's width / height.
 /// Errors: INVALID_ARGUMENT also for another projection, and for a struct_size without tan_up. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_through_lens(

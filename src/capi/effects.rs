@@ -6,7 +6,7 @@ use super::context::BhrContext;
 use super::pointer::{Out, check_finite};
 use super::status::BhrStatus;
 use crate::error::{Error, out_of_range};
-use crate::scene::{EffectStrengths, Effects};
+use crate::scene::{EffectStrengths, Effects, Scene};
 
 /// The frequency shift by motion colours the light.
 pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
@@ -147,6 +147,36 @@ pub unsafe extern "C" fn bhr_get_time(context: *const BhrContext, out_time: *mut
         on_context("bhr_get_time", context, |state| {
             time.required("out_time")?;
             time.set(state.renderer.scene.time);
+            Ok(())
+        })
+    }
+}
+
+/// Sets how long the shutter is open, scene lengths of time, half of it before the scene's time, 0 .. 1e300; default 0:
+/// frames show one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments, evenly over
+/// the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as they move; one
+/// sample sees the middle. Camera and hole stay. Beyond 1000 M it counts as 1000 M. docs/motion-blur.md.
+/// Errors: INVALID_ARGUMENT for another time. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_shutter(context: *mut BhrContext, shutter: f64) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_shutter", context, |state| {
+            state.renderer.scene.shutter = Scene::check_shutter(shutter)?;
+            Ok(())
+        })
+    }
+}
+
+/// Reads how long the shutter is open as it is set, scene lengths. @since 0.2.0
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_shutter(context: *const BhrContext, out_shutter: *mut f64) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let shutter = Out::cleared(out_shutter);
+        on_context("bhr_get_shutter", context, |state| {
+            shutter.required("out_shutter")?;
+            shutter.set(state.renderer.scene.shutter);
             Ok(())
         })
     }

@@ -12,9 +12,9 @@ use crate::renderer::{FrameGoal, MatterChoice};
 use crate::scene::{Preset, PresetMatter, Region};
 
 /// A named look: values for all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky, which
-/// setters can then change. Hole, camera, hot spots, time, view, quality, region, and the sky's orientation, seed
-/// and map stay as they are: a host that shows its own map sets BHR_SKY_MAP again. docs/presets.md has the tables of
-/// the values. @since 0.2.0
+/// setters can then change. Hole, camera, hot spots, time, shutter, view, quality, region, and the sky's orientation,
+/// seed and map stay as they are: a host that shows its own map sets BHR_SKY_MAP again. docs/presets.md has the tables
+/// of the values. @since 0.2.0
 pub type BhrPreset = i32;
 /// The default: a golden disk with structure and soft edges, its approaching side nearly white, and glare.
 pub const BHR_PRESET_CINEMATIC: BhrPreset = 0;

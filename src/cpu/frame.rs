@@ -7,15 +7,16 @@ use super::lens::LensLookup;
 use super::record::{Neighbours, Recorder};
 use super::record_source::RecordSource;
 use super::refine::Refiner;
-use super::shade::Shader;
+use super::shade::{Shader, Shading};
 use super::tables::LensCache;
 use crate::allocate::filled;
 use crate::emit::half::Evenness;
+use crate::emit::moment::Shutter;
 use crate::error::Result;
 use crate::film::{FilmParams, develop_row};
 use crate::image::Lut;
 use crate::parallel::prelude::*;
-use crate::scene::frame::sample_offset;
+use crate::scene::frame::sample_of;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{KerrThreshold, Scene, View};
@@ -36,6 +37,7 @@ pub struct Frame<'a> {
     lut: Option<&'a Lut>,
     request: &'a FrameRequest,
     pub samples: u32,
+    shutter: Shutter,
 }
 
 impl<'a> Frame<'a> {
@@ -73,6 +75,7 @@ impl<'a> Frame<'a> {
             lut,
             request,
             samples,
+            shutter: scene.open_shutter(),
         })
     }
 
@@ -87,22 +90,24 @@ impl<'a> Frame<'a> {
     /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays. Errors:
     /// OUT_OF_MEMORY.
     pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> Result<u64> {
-        let offset = sample_offset(sample, self.samples, self.lens.mapping.projection);
+        let (offset, moment) = sample_of(sample, self.samples, self.lens.mapping.projection, self.shutter);
+        let shading = Shading { shader: &self.shader, moment };
         let weight = 1.0 / f64::from(self.samples);
-        self.with_records(tile, offset, sum, |record, x, y, pixel| {
+        self.with_records(tile, (offset, moment), sum, |record, x, y, pixel| {
             let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look_direction(x, y));
-            let refined = refiner.and_then(|r| r.light(&self.shader, record, [x, y]));
-            let value = refined.unwrap_or_else(|| self.shader.shade_record(record, x, y));
+            let refined = refiner.and_then(|r| r.light(shading, record, [x, y]));
+            let value = refined.unwrap_or_else(|| shading.shade_record(record, x, y));
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
         })
     }
 
     /// Calls `take` with the record of each pixel of `tile` (its ray passing through the place `offset`, 0 .. 1, of
-    /// the pixel), its place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
+    /// the pixel, and seeing matter `moment` after the frame's time, M), its place, and its item of `out`; the steps of
+    /// all rays. Errors: OUT_OF_MEMORY.
     pub(super) fn with_records<T: Send>(
         &self,
         tile: Tile,
-        offset: [f64; 2],
+        (offset, moment): ([f64; 2], f64),
         out: &mut [T],
         take: impl Fn(&Record, f64, f64, &mut T) + Sync,
     ) -> Result<u64> {
@@ -110,7 +115,7 @@ impl<'a> Frame<'a> {
         let tile = Tile { x: region.x + tile.x, y: region.y + tile.y, ..tile };
         let origin = [f64::from(tile.x) + offset[0], f64::from(tile.y) + offset[1]];
         match &self.source {
-            RecordSource::Traced(recorder) => trace_records((recorder, self.half), tile, offset, out, take),
+            RecordSource::Traced(recorder) => trace_records((recorder, self.half), tile, (offset, moment), out, take),
             RecordSource::LensLookup(lookup) => Ok(look_records_up(lookup, tile, origin, out, take)),
         }
     }
@@ -132,7 +137,7 @@ impl<'a> Frame<'a> {
 fn trace_records<T: Send>(
     (recorder, half): (&Recorder<'_>, Option<Evenness>),
     tile: Tile,
-    offset: [f64; 2],
+    (offset, moment): ([f64; 2], f64),
     out: &mut [T],
     take: impl Fn(&Record, f64, f64, &mut T) + Sync,
 ) -> Result<u64> {
@@ -141,7 +146,7 @@ fn trace_records<T: Send>(
         let at = |begin: i32, past: u32, offset: f64| f64::from(begin) + offset - 1.0 + f64::from(past);
         (at(begin[0], column, offset[0]), at(begin[1], row, offset[1]))
     };
-    let blocks = |evenness| Blocks::new(recorder, evenness, begin, [tile.width, tile.height], offset);
+    let blocks = |evenness| Blocks::new(recorder, evenness, begin, [tile.width, tile.height], (offset, moment));
     let blocks = half.map(blocks).transpose()?;
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
@@ -151,7 +156,7 @@ fn trace_records<T: Send>(
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
         for (record, column) in records.iter_mut().zip(0..) {
             let (x, y) = place(column, row);
-            *record = if blocks.is_some() { recorder.trace_bare(x, y) } else { recorder.trace(x, y) };
+            *record = if blocks.is_some() { recorder.trace_bare(x, y) } else { recorder.trace_among(x, y, 1, moment) };
         }
     });
     let rows =

@@ -20,6 +20,8 @@ pub struct Blocks<'a> {
     first: [i32; 2],
     stride: usize,
     records: Vec<Record>,
+    /// When matter is seen, less the frame's time, M.
+    moment: f64,
 }
 
 impl<'a> Blocks<'a> {
@@ -29,17 +31,17 @@ impl<'a> Blocks<'a> {
         evenness: Evenness,
         begin: [i32; 2],
         size: [u32; 2],
-        offset: [f64; 2],
+        (offset, moment): ([f64; 2], f64),
     ) -> Result<Self> {
         let [(x, columns), (y, rows)] = [0, 1].map(|i| blocks_of(begin[i], size[i]));
         let stride = columns as usize;
         let mut records = filled(stride * rows as usize, Record::captured(), "the blocks of a tile's matter")?;
         records.par_chunks_mut(stride).zip(y..y + rows as i32).for_each(|(records, y)| {
             for (record, x) in records.iter_mut().zip(x..) {
-                *record = recorder.trace(block_place(x, offset[0]), block_place(y, offset[1]));
+                *record = recorder.trace_among(block_place(x, offset[0]), block_place(y, offset[1]), 1, moment);
             }
         });
-        Ok(Self { recorder, evenness, offset, first: [x, y], stride, records })
+        Ok(Self { recorder, evenness, offset, first: [x, y], stride, records, moment })
     }
 
     /// The media of a pixel, of which `record` has everything else, and whether they come from blocks. None where the
@@ -52,7 +54,7 @@ impl<'a> Blocks<'a> {
         }
         match self.told_by_blocks(pixel, x, record) {
             Some(media) => (media, true),
-            None => (self.recorder.trace(x, y).media, false),
+            None => (self.recorder.trace_among(x, y, 1, self.moment).media, false),
         }
     }
 
@@ -89,7 +91,8 @@ mod tests {
         let lens = scene.lens(&Region { full_width, full_height, x: 0, y: 0 }).expect("a lens");
         let recorder = Recorder::new(scene, &lens, &[]);
         let evenness = scene.half_resolution().expect("half resolution");
-        let blocks = Blocks::new(&recorder, evenness, [0, 0], [full_width, full_height], [0.5; 2]).expect("blocks");
+        let blocks =
+            Blocks::new(&recorder, evenness, [0, 0], [full_width, full_height], ([0.5; 2], 0.0)).expect("blocks");
         let own = (0..full_width * full_height).into_par_iter().filter(|i| {
             let pixel = [(i % full_width) as i32, (i / full_width) as i32];
             let [x, y] = pixel.map(|at| f64::from(at) + 0.5);

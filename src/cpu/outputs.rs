@@ -37,7 +37,7 @@ impl CpuTracer {
             let count = tile.width as usize * tile.height as usize;
             let mut pixels: Vec<PixelValues> = filled(count, Default::default(), WHAT)?;
             steps += pool.install(|| {
-                frame.with_records(*tile, [0.5; 2], &mut pixels, |record, x, y, pixel| {
+                frame.with_records(*tile, ([0.5; 2], 0.0), &mut pixels, |record, x, y, pixel| {
                     for (output, out) in outputs.iter().zip(pixel) {
                         *out = values.values(*output, record, x, y).map(|value| value as f32);
                     }

@@ -66,19 +66,19 @@ impl<'a> Recorder<'a> {
         recorder
     }
 
-    /// The record of position (x, y) of the full frame, without footprints.
+    /// The record of position (x, y) of the full frame, without footprints, at the frame's time.
     pub fn trace(&self, x: f64, y: f64) -> Record {
-        self.trace_among(x, y, 1)
+        self.trace_among(x, y, 1, 0.0)
     }
 
-    /// The record of position (x, y), as one of `rays` of a pixel.
-    pub fn trace_among(&self, x: f64, y: f64, rays: u32) -> Record {
-        self.trace_with(x, y, self.emitters.needs().parts, rays)
+    /// The record of position (x, y), as one of `rays` of a pixel, `moment` after the frame's time, M.
+    pub fn trace_among(&self, x: f64, y: f64, rays: u32, moment: f64) -> Record {
+        self.trace_with(x, y, self.emitters.needs().parts, (rays, moment))
     }
 
     /// The record of position (x, y), without the matter along the ray.
     pub fn trace_bare(&self, x: f64, y: f64) -> Record {
-        self.trace_with(x, y, false, 1)
+        self.trace_with(x, y, false, (1, 0.0))
     }
 
     /// The settings of the ray through (x, y): what hides the rest of it may itself be hidden by the host's things.
@@ -105,7 +105,7 @@ impl<'a> Recorder<'a> {
         (farthest < f64::INFINITY).then_some(Limit { eye, farthest, ends, ended: false })
     }
 
-    fn trace_with(&self, x: f64, y: f64, parts: bool, rays: u32) -> Record {
+    fn trace_with(&self, x: f64, y: f64, parts: bool, (rays, moment): (u32, f64)) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
         let settings = self.settings_at(x, y);
@@ -115,7 +115,7 @@ impl<'a> Recorder<'a> {
             // Aberration makes angles as much smaller as frequencies larger.
             let pixel_angle = self.lens.mapping.pixel_angle * frequency_ratio;
             let static_observer = observer.frame.static_observer();
-            let seen = Seen { frequency_ratio, static_observer, pixel_angle, swept: 0.0, rays };
+            let seen = Seen { frequency_ratio, static_observer, pixel_angle, swept: 0.0, rays, moment };
             let limit = self.limit(x, y);
             let mut along = MediaAlong { emitters, seen, plane_u, media, medium, limit };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &settings, &mut along);

@@ -4,7 +4,7 @@
 
 use super::record::{derivative_of_direction, derivative_of_place};
 use super::record_source::RecordSource;
-use super::shade::Shader;
+use super::shade::Shading;
 use crate::emit::{Crossing, Emission};
 use crate::physics::lens::critical::CurveLevel;
 use crate::physics::plunge::Matter;
@@ -98,19 +98,19 @@ impl<'a> Refiner<'a> {
     }
 
     /// Light and alpha of the pixel whose centre `at` has the record `here`. `None`: nothing runs through it.
-    pub fn light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
+    pub fn light(&self, shading: Shading<'_, '_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
         let smooth = match here.edge {
             Edge::None => return None,
-            Edge::Disk => self.light_of_quarters(shader, at),
+            Edge::Disk => self.light_of_quarters(shading, at),
             Edge::Curve => None,
         };
-        Some(smooth.unwrap_or_else(|| self.light_of_strips(shader, at)))
+        Some(smooth.unwrap_or_else(|| self.light_of_strips(shading, at)))
     }
 
     /// `None`: they do not suffice, being uneven or near the critical curve.
-    fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
+    fn light_of_quarters(&self, shading: Shading<'_, '_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
-        let records = places.map(|place| self.sample(place, EDGE_SAMPLES));
+        let records = places.map(|place| self.sample(place, EDGE_SAMPLES, shading.moment));
         let is_even = match self.evenness(&records, at) {
             Evenness::Ragged => false,
             // The critical curve and thin images may cross the pixel with all samples on one side.
@@ -122,10 +122,10 @@ impl<'a> Refiner<'a> {
         }
         let samples = Samples { records: &records, beside: &beside_quarter };
         let cell = |index| Place { at: places[index as usize % 4], weight: 0.25, first_half: None };
-        Some(self.mean(shader, &samples, cell))
+        Some(self.mean(shading, &samples, cell))
     }
 
-    fn light_of_strips(&self, shader: &Shader<'_>, at: [f64; 2]) -> [f64; 4] {
+    fn light_of_strips(&self, shading: Shading<'_, '_>, at: [f64; 2]) -> [f64; 4] {
         let level = LevelAbout::new(self.lens, &self.level, at);
         let (strips, slope) = level.strips(self.curve_samples);
         let mut records = ArrayVec::<Record, { CURVE_SAMPLES as usize }>::new();
@@ -135,36 +135,36 @@ impl<'a> Refiner<'a> {
             let distance = level.at(strips.foot(&cell).map(|c| c - 0.5)) / slope;
             let at = place_about(at, strips.corrected(&cell, distance));
             *place = Place { at, weight: cell.weight, first_half: Some(cell.first_half) };
-            records.push(self.sample(at, self.curve_samples));
+            records.push(self.sample(at, self.curve_samples, shading.moment));
         }
         let beside = |index| strips.beside(index);
         let samples = Samples { records: &records, beside: &beside };
-        self.mean(shader, &samples, |index| places[(index % CURVE_SAMPLES) as usize])
+        self.mean(shading, &samples, |index| places[(index % CURVE_SAMPLES) as usize])
     }
 
     /// The record at a place, one of `rays` of its pixel, without footprints.
-    fn sample(&self, [x, y]: [f64; 2], rays: u32) -> Record {
+    fn sample(&self, [x, y]: [f64; 2], rays: u32, moment: f64) -> Record {
         match &self.plane {
             RecordSource::LensLookup(lookup) => {
                 let mut record = Record::captured();
                 lookup.sample(x, y, &mut record);
                 record
             }
-            RecordSource::Traced(recorder) => recorder.trace_among(x, y, rays),
+            RecordSource::Traced(recorder) => recorder.trace_among(x, y, rays, moment),
         }
     }
 
     /// The mean light of cells.
-    fn mean(&self, shader: &Shader<'_>, samples: &Samples<'_>, place: impl Fn(u32) -> Place) -> [f64; 4] {
+    fn mean(&self, shading: Shading<'_, '_>, samples: &Samples<'_>, place: impl Fn(u32) -> Place) -> [f64; 4] {
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         for index in 0..samples.records.len() as u32 {
             let Place { at: [x, y], weight, first_half } = place(index);
             let Some(record) = samples.completed(index) else { continue };
-            let light = shader.shade_record_with(&record, x, y, |crossing, open| {
+            let light = shading.shade_record_with(&record, x, y, |crossing, open| {
                 let mut emission = Emission { light: [0.0; 3], opacity: 0.0 };
                 let mut lit = Lit::default();
                 for (part, weight, spread2) in self.seen_parts(samples, index, crossing, first_half) {
-                    let seen = shader.emission(&record, &part, open);
+                    let seen = shading.shader.emission(&record, &part, open);
                     (0..3).for_each(|c| emission.light[c] += weight * seen.light[c]);
                     emission.opacity += weight * seen.opacity;
                     lit.add(weight * seen.light.iter().sum::<f64>(), part.u - crossing.u, spread2);

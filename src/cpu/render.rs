@@ -81,7 +81,7 @@ impl CpuTracer {
         let mut records = filled(count, Record::captured(), "the records of a frame's rays")?;
         let keep = |record: &Record, _: f64, _: f64, out: &mut Record| *out = record.clone();
         self.with_frame(scene, request, |pool, frame| {
-            pool.install(|| frame.with_records(tile, [0.5; 2], &mut records, keep))
+            pool.install(|| frame.with_records(tile, ([0.5; 2], 0.0), &mut records, keep))
         })?;
         Ok(records)
     }

@@ -32,6 +32,38 @@ pub struct Shader<'a> {
     transparent: bool,
 }
 
+/// A shader that sees matter `moment` after the frame's time, M.
+#[derive(Clone, Copy)]
+pub struct Shading<'s, 'a> {
+    pub shader: &'s Shader<'a>,
+    pub moment: f64,
+}
+
+impl Shading<'_, '_> {
+    /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
+    /// shows nothing.
+    pub fn shade_record(self, here: &Record, x: f64, y: f64) -> [f64; 4] {
+        self.shade_record_with(here, x, y, |crossing, open| (self.shader.emission(here, crossing, open), *crossing))
+    }
+
+    /// The light of a record, each of whose crossings adds what `seen_emission` gives in the place of `emission`.
+    pub fn shade_record_with(
+        self,
+        here: &Record,
+        x: f64,
+        y: f64,
+        seen_emission: impl Fn(&Crossing, f64) -> (Emission, Crossing),
+    ) -> [f64; 4] {
+        let Self { shader, moment } = self;
+        match (shader.scene.view, shader.lens.mapping.has_look_direction(x, y)) {
+            (View::Light, true) => shader.pixel_light(here, shader.shown(x, y), moment, seen_emission),
+            (View::Light, false) => [0.0; 4],
+            (_, true) => [shader.view_value(here, x, y), 0.0, 0.0, 1.0],
+            (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
+        }
+    }
+}
+
 impl<'a> Shader<'a> {
     /// Errors: OUT_OF_MEMORY.
     pub fn new(scene: &'a Scene, lens: &'a Lens, stars: Arc<StarIndex>, transparent: bool) -> Result<Self> {
@@ -50,28 +82,6 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
-    /// shows nothing.
-    pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
-        self.shade_record_with(here, x, y, |crossing, open| (self.emission(here, crossing, open), *crossing))
-    }
-
-    /// The light of a record, each of whose crossings adds what `seen_emission` gives in the place of `emission`.
-    pub fn shade_record_with(
-        &self,
-        here: &Record,
-        x: f64,
-        y: f64,
-        seen_emission: impl Fn(&Crossing, f64) -> (Emission, Crossing),
-    ) -> [f64; 4] {
-        match (self.scene.view, self.lens.mapping.has_look_direction(x, y)) {
-            (View::Light, true) => self.pixel_light(here, self.shown(x, y), seen_emission),
-            (View::Light, false) => [0.0; 4],
-            (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
-            (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
-        }
-    }
-
     /// The part of the ray through (x, y) that the host's things leave; `None`: there are none.
     fn shown(&self, x: f64, y: f64) -> Option<Shown> {
         let occluder = self.scene.occluder.as_ref()?;
@@ -80,11 +90,12 @@ impl<'a> Shader<'a> {
     }
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share. `shown`: the part of the ray that is seen; where
-    /// it ends, what is behind takes the sky's place.
+    /// it ends, what is behind takes the sky's place. `moment`: the time at which it is seen less that of the frame, M.
     fn pixel_light(
         &self,
         here: &Record,
         shown: Option<Shown>,
+        moment: f64,
         seen_emission: impl Fn(&Crossing, f64) -> (Emission, Crossing),
     ) -> [f64; 4] {
         let eye = self.lens.place.e_r * self.lens.place.r;
@@ -107,7 +118,7 @@ impl<'a> Shader<'a> {
             }
             let (emission, lit) = seen_emission(crossing, open);
             if emission.opacity > 0.0 {
-                let structure = self.plane.structure(&lit);
+                let structure = self.plane.structure(&lit, moment);
                 (0..3).for_each(|c| light[c] += structure * emission.light[c]);
                 open *= 1.0 - emission.opacity;
             }

@@ -248,7 +248,7 @@ mod tests {
     const SPIN: f64 = 0.6;
 
     fn key(volume: &Volume, time: f64, finest: usize) -> BakeKey {
-        let when = When { time, reference_delay: 0.0, delayed: true };
+        let when = When { time, reference_delay: 0.0, delayed: true, shutter: 0.0 };
         let matter = VolumeMatter::new(volume, SPIN, &when, Accuracy::PICTURE).unwrap();
         BakeKey { finest, ..matter.bake_key(SPIN, 1.0, 0.0).unwrap() }
     }

@@ -33,6 +33,8 @@ pub struct When {
     pub reference_delay: f64,
     /// Whether light is seen as it left, each ray's by its own delay.
     pub delayed: bool,
+    /// The time over which the moments of samples are spread, half of it before `time` (`super::moment`).
+    pub shutter: f64,
 }
 
 /// How long the generations of a band live, M, how far in ln r they are carried per M, and the time in which one fades

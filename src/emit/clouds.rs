@@ -295,7 +295,7 @@ mod tests {
         let flow = Flow::new(SPIN, volume.retrograde, motion);
         let cloud = Cloud::new(volume, flow.isco);
         let reach = cloud.reach(SPIN, 1e-7).unwrap();
-        let when = When { time, reference_delay: 0.0, delayed: true };
+        let when = When { time, reference_delay: 0.0, delayed: true, shutter: 0.0 };
         Matter { cloud, flow, clouds: Clouds::new(volume, &cloud, &reach, &flow, SPIN, &when).unwrap() }
     }
 

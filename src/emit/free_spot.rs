@@ -53,6 +53,8 @@ pub struct FreeCentre {
     goes: f64,
     /// Its r at the time of the frame, M.
     pub r: f64,
+    /// The rain time T that goes by at the centre while t does, over the time that a shutter is open.
+    pub pace: f64,
 }
 
 /// A world line by what it begins with.
@@ -107,10 +109,10 @@ impl FreeCentre {
     /// About the moment `when`: as far as light comes from that is seen at once, or if it is not delayed, at that time
     /// itself. `None`: the centre is nowhere then, or nowhere near.
     pub fn new(spin: f64, body: &Body, size: f64, series: &OffsetSeries, when: &When) -> Option<Self> {
-        let When { time, delayed, .. } = *when;
+        let When { time, delayed, shutter, .. } = *when;
         let table = table_of(spin, body)?;
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
-        if (time - table.nodes(false).first()?.time).abs() > table.longest() + EARLIER {
+        if (time - table.nodes(false).first()?.time).abs() > table.longest() + EARLIER + 0.5 * shutter {
             return None;
         }
         let r_plus = horizon_outer(spin);
@@ -121,7 +123,7 @@ impl FreeCentre {
             let offsets = series.at(1.0 / compared, 1.0 - r_plus / compared);
             (node.time - offsets.time - time, r)
         };
-        let [earlier, later] = if delayed { [EARLIER, LATER] } else { [0.0; 2] };
+        let [earlier, later] = if delayed { [EARLIER, LATER] } else { [0.0; 2] }.map(|beside| beside + 0.5 * shutter);
         let reach = if delayed { 1.0 } else { 0.0 };
         let is_before = |node: &Node| {
             let (since, r) = since(node);
@@ -140,6 +142,8 @@ impl FreeCentre {
         let ends = [table.end(true).is_some(), table.end(false).is_some()];
         let all = Ordered { past: table.nodes(true), future: table.nodes(false) };
         let now = Self::at_time(&all, |node| since(node).0);
+        let beside = |moment: f64| Self::at_time(&all, |node| since(node).0 - moment).time;
+        let pace = if shutter > 0.0 { (beside(0.5 * shutter) - beside(-0.5 * shutter)) / shutter } else { 1.0 };
         // In the time of one frame, an end that has come before may still be seen to go.
         if delayed && (is_after(all.node(0)) || is_before(all.node(all.len() - 1))) {
             return None;
@@ -154,7 +158,7 @@ impl FreeCentre {
         let origin = if delayed { time } else { now.time };
         let nodes = (begin..end).map(|i| Node { time: all.node(i).time - origin, ..*all.node(i) });
         let nodes = collected(nodes, "a hot spot's places").ok()?;
-        Some(Self { nodes, ends, goes: GOES * size, r: now.position.length() })
+        Some(Self { nodes, ends, goes: GOES * size, r: now.position.length(), pace })
     }
 
     /// The place at which `since` is 0, which grows along the line; where it is so at none, the end that is nearest,

@@ -54,6 +54,8 @@ pub struct Layers<'a, 'b> {
     when: &'a When,
     part: &'a Part<'b>,
     frequency_ratio: f64,
+    /// The ray's time less that of the frame, M.
+    moment: f64,
     /// The end of the piece that was summed last, as a share of the part, with the quantities there.
     last: Option<(f64, Slow)>,
 }
@@ -70,10 +72,10 @@ impl<'a, 'b> Layers<'a, 'b> {
         baked: Option<&'a Baked>,
         when: &'a When,
         part: &'a Part<'b>,
-        frequency_ratio: f64,
+        (frequency_ratio, moment): (f64, f64),
     ) -> Option<Self> {
         let (clouds, baked) = (volume.clouds.as_ref()?, baked?);
-        Some(Self { volume, clouds, baked, when, part, frequency_ratio, last: None })
+        Some(Self { volume, clouds, baked, when, part, frequency_ratio, moment, last: None })
     }
 
     /// Whether parabolas tell a piece between two places (1/r, cos th).
@@ -103,7 +105,7 @@ impl<'a, 'b> Layers<'a, 'b> {
         let (g, nu) = if moves { (self.frequency_ratio / nu, nu) } else { (1.0, 0.0) };
         let delay = if self.when.delayed { c.retardation(self.part.observer, &there) } else { 0.0 };
         let azimuth = c.matter_azimuth(&there);
-        let seen = CloudPlace { r, cos, azimuth, later: self.when.reference_delay - delay };
+        let seen = CloudPlace { r, cos, azimuth, later: self.when.reference_delay - delay + self.moment };
         let [turns, row, _] = self.clouds.place(&volume.cloud, &seen, Carried::new(velocity, c.a, &at));
         let cloud = &volume.cloud;
         let mut column = nu * self.part.length(&there);

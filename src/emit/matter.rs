@@ -111,8 +111,10 @@ pub struct FreePlace {
     pub cos: f64,
     /// Boyer and Lindquist's.
     pub azimuth: f64,
-    /// Time t since `When::time`; `None`: light takes no time, and all is seen where it is at that of the frame.
+    /// Time t since `When::time`; `None`: light takes no time, and all is seen where it is at that of the ray.
     pub later: Option<f64>,
+    /// The ray's time less that of the frame, M.
+    pub moment: f64,
 }
 
 impl VolumeMatter {
@@ -256,7 +258,8 @@ impl SpotMatter {
     /// it. `series`: the offsets of Doran's chart. `None`: there is none of it.
     pub fn free_at(&self, c: &Constants, series: &OffsetSeries, there: &FreePlace) -> Option<(f64, DVec3)> {
         let offsets = series.at(there.u, 1.0 - there.u * c.r_plus);
-        let centre = self.free.as_ref()?.at(there.later.map_or(0.0, |later| later + offsets.time))?;
+        let free = self.free.as_ref()?;
+        let centre = free.at(there.later.map_or(there.moment * free.pace, |later| later + offsets.time))?;
         let sin = ((1.0 - there.cos) * (1.0 + there.cos)).max(0.0).sqrt();
         let place = turned(DVec3::new(sin, 0.0, there.cos) / there.u, there.azimuth + offsets.azimuth);
         let density = self.free_density(place, &centre);

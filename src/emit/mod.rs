@@ -10,6 +10,7 @@
 //! To add an emitter, follow "Where to change what" in ARCHITECTURE.md.
 
 pub mod bands;
+pub mod moment;
 pub mod crossing;
 pub mod disk;
 mod lattice;
@@ -167,9 +168,10 @@ impl PlaneLight {
         }
     }
 
-    /// The factor by which the emitters' structure changes the light of a crossing.
-    pub fn structure(&self, crossing: &Crossing) -> f64 {
-        self.disk.as_ref().map_or(1.0, |disk| disk.structure(crossing))
+    /// The factor by which the emitters' structure changes the light of a crossing, seen `moment` after the frame's
+    /// time, M.
+    pub fn structure(&self, crossing: &Crossing, moment: f64) -> f64 {
+        self.disk.as_ref().map_or(1.0, |disk| disk.structure(crossing, moment))
     }
 
     /// The share of the light from behind that a crossing hides.

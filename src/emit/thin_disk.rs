@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The accretion disk of a scene: where it lies, and its light at a crossing. Mirrored by `shaders/emit/disk.wgsl`.
 
-use super::crossing::{Crossing, Emission, Shift};
+use super::crossing::{Crossing, Emission, EmissionPoint, Shift};
 use super::disk::{Disk, DiskReference, EmissionLaw};
 use super::streaks::Streaks;
 use super::turbulence::Turbulence;
@@ -196,10 +196,12 @@ impl DiskLight {
         Emission { light: self.light(profile, shift).map(|v| strength * v), opacity }
     }
 
-    /// The factor by which the disk's structure changes the light of a crossing.
-    pub fn structure(&self, crossing: &Crossing) -> f64 {
+    /// The factor by which the disk's structure changes the light of a crossing, seen `moment` after the frame's time,
+    /// M.
+    pub fn structure(&self, crossing: &Crossing, moment: f64) -> f64 {
+        let at = EmissionPoint { delay: crossing.place.delay - moment, ..crossing.place };
         match (self.disk.turbulence, self.streaks) {
-            (Some(turbulence), Some(streaks)) => turbulence.brightness(streaks, crossing.place, crossing.footprint),
+            (Some(turbulence), Some(streaks)) => turbulence.brightness(streaks, at, crossing.footprint),
             _ => 1.0,
         }
     }

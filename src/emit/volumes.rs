@@ -68,6 +68,8 @@ pub struct Seen {
     pub swept: f64,
     /// How many rays of a pixel it is one of.
     pub rays: u32,
+    /// The ray's time less that of the frame, M.
+    pub moment: f64,
 }
 
 impl Seen {
@@ -258,13 +260,10 @@ impl Volumes {
         if part.innermost_end() * MARGIN_STEP < outer || medium.depth > self.accuracy.dark {
             return;
         }
-        let alone = match (&self.volumes[..], self.is_alone_in_layers()) {
-            ([volume], true) => {
-                let baked = self.baked.first().and_then(Option::as_deref);
-                Layers::new(volume, baked, &self.when, part, seen.frequency_ratio)
-            }
-            _ => None,
-        };
+        let alone = self.volumes.first().filter(|_| self.is_alone_in_layers()).and_then(|volume| {
+            let baked = self.baked.first().and_then(Option::as_deref);
+            Layers::new(volume, baked, &self.when, part, (seen.frequency_ratio, seen.moment))
+        });
         let footprints = match seen.pixel_angle > 0.0 && self.has_structure() {
             true => [0.0, 1.0].map(|x| seen.after(part, x).footprint(part.constants, part.observer, &part.at(x))),
             false => [0.0; 2],
@@ -348,7 +347,7 @@ impl Volumes {
         let mut moment = || {
             *moment.get_or_insert_with(|| {
                 let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
-                (c.matter_azimuth(there), self.when.reference_delay - delay)
+                (c.matter_azimuth(there), self.when.reference_delay - delay + seen.moment)
             })
         };
         let mut add = |light: &ZamoLight, velocity: Velocity, glow: &Glow, density: f64, heat: f64| {
@@ -384,7 +383,8 @@ impl Volumes {
             let (azimuth, later) = moment();
             if spot.free.is_some() {
                 let Some(series) = &self.offsets else { continue };
-                let place = FreePlace { u: there.u, cos, azimuth, later: self.when.delayed.then_some(later) };
+                let later = self.when.delayed.then_some(later);
+                let place = FreePlace { u: there.u, cos, azimuth, later, moment: seen.moment };
                 if let Some((density, seen)) = spot.free_at(c, series, &place) {
                     let (at, light) = measure();
                     add(&light, zamo_velocity(&at, seen), &spot.glow, density, 1.0);

@@ -147,7 +147,7 @@ mod tests {
             }
         }
         println!("{worst:?}");
-        assert!(worst.0 < 1e-5, "{worst:?}");
+        assert!(worst.0 < 1e-6, "{worst:?}");
     }
 
     #[test]

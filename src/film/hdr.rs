@@ -64,16 +64,20 @@ impl HdrParams {
     }
 }
 
-/// The PQ code of light in parts of 10,000 cd/m^2, both 0 .. 1.
+/// The PQ code of light in parts of 10,000 cd/m^2, both 0 .. 1: ((C1 + C2 p) / (1 + C3 p))^M2, p = light^M1. The base
+/// is close to 1 and M2 is 79: in f32 its distance from 1, (1 - C1) (1 - p) / (1 + C3 p), keeps the digits of the code.
+/// WGSL, which has no such logarithm, takes the power: its twin is compared as codes of ten bits are.
 pub(crate) fn pq_encode(light: f32) -> f32 {
     let power = light.powf(PQ_M1);
-    ((PQ_C1 + PQ_C2 * power) / (1.0 + PQ_C3 * power)).powf(PQ_M2)
+    let below = (1.0 - PQ_C1) * (1.0 - power) / (1.0 + PQ_C3 * power);
+    (PQ_M2 * (-below).ln_1p()).exp()
 }
 
-/// The light of a PQ code.
+/// The light of a PQ code: ((root - C1) / (C2 - C3 root))^(1 / M1), root = code^(1 / M2), by the root's distance from
+/// 1.
 pub(crate) fn pq_decode(code: f32) -> f32 {
-    let root = code.powf(1.0 / PQ_M2);
-    ((root - PQ_C1).max(0.0) / (PQ_C2 - PQ_C3 * root)).powf(1.0 / PQ_M1)
+    let below = (code.ln() / PQ_M2).exp_m1();
+    (((1.0 - PQ_C1) + below).max(0.0) / ((1.0 - PQ_C1) - PQ_C3 * below)).powf(1.0 / PQ_M1)
 }
 
 /// The PQ code that brightest channels of the code `code` are rolled off to.
@@ -137,8 +141,26 @@ mod tests {
             (10_000.0, 1.0),
         ] {
             let got = pq_encode((light / PQ_PEAK) as f32);
-            assert!((f64::from(got) - code).abs() < 1e-5, "{light} cd/m^2: {got}, not {code}");
-            assert!((f64::from(pq_decode(got)) * PQ_PEAK - light).abs() <= 2e-4 * light, "{light}: and back");
+            assert!((f64::from(got) - code).abs() < 1e-6, "{light} cd/m^2: {got}, not {code}");
+            assert!((f64::from(pq_decode(got)) * PQ_PEAK - light).abs() <= 2e-5 * light, "{light}: and back");
+        }
+    }
+
+    /// SMPTE ST 2084 and ITU-R BT.2100, table 5, in f64.
+    #[test]
+    fn codes_are_those_of_the_formulas() {
+        let [m1, m2] = [2610.0 / 16384.0, 2523.0 / 32.0_f64];
+        let [c1, c2, c3] = [3424.0 / 4096.0, 2413.0 / 128.0, 2392.0 / 128.0_f64];
+        for i in 0..=10_000 {
+            let light = (i as f32 * 1e-4).powi(3);
+            let power = f64::from(light).powf(m1);
+            let pq = ((c1 + c2 * power) / (1.0 + c3 * power)).powf(m2);
+            let (a, b) = (0.178_832_77_f64, 0.284_668_92);
+            let c = 0.5 - a * (4.0 * a).ln();
+            let exact = f64::from(light);
+            let hlg = if exact <= 1.0 / 12.0 { (3.0 * exact).sqrt() } else { a * (12.0 * exact - b).ln() + c };
+            let ours = [pq_encode(light), hlg_encode(light)].map(f64::from);
+            assert!((ours[0] - pq).abs() < 1e-6 && (ours[1] - hlg).abs() < 1e-6, "{light}: {ours:?}, not {pq}, {hlg}");
         }
     }
 

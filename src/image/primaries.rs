@@ -74,17 +74,20 @@ fn is_sound(matrix: DMat3) -> bool {
     matrix.to_cols_array().iter().all(|number| number.abs() <= MAX_FACTOR)
 }
 
-/// Lights given in CIE XYZ, by columns, to Rec. 709, whose white takes the place of `white` as Bradford has it (Lam
-/// 1985, as in ICC.1:2022, annex E). `None` where numbers are not finite or too large for colours, and where the three
-/// lights do not span a space.
-pub fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
+/// Light in CIE XYZ as it is when the white `from` has become `to`, as Bradford has it (Lam 1985, as in ICC.1:2022,
+/// annex E).
+fn adapted(from: DVec3, to: DVec3) -> DMat3 {
     // The answers of three kinds of cones, sharpened, by rows.
     const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
     let cones = DMat3::from_cols_array_2d(&BRADFORD).transpose();
-    let (from, to) = (cones * white, cones * Primaries::REC709.white());
-    let adapted = cones.inverse() * DMat3::from_diagonal(to / from) * cones;
+    cones.inverse() * DMat3::from_diagonal((cones * to) / (cones * from)) * cones
+}
+
+/// Lights given in CIE XYZ, by columns, to Rec. 709, whose white takes the place of `white`. `None` where numbers are
+/// not finite or too large for colours, and where the three lights do not span a space.
+pub fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
     let rec709 = Primaries::REC709.to_xyz()?.inverse();
-    let matrix = rec709 * adapted * lights;
+    let matrix = rec709 * adapted(white, Primaries::REC709.white()) * lights;
     (lights.determinant().abs() > 1e-6 && is_sound(matrix)).then_some(matrix)
 }
 
@@ -92,4 +95,39 @@ pub fn from_xyz(lights: DMat3, white: DVec3) -> Option<DMat3> {
 /// by columns. `None` as for `from_xyz`.
 pub fn white_balance(white: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     from_xyz(Primaries::REC709.to_xyz()?, white.into()).map(|matrix| matrix.to_cols_array_2d())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// B. Lindbloom's table of Bradford's adaptation between CIE illuminants, by rows, and its whites (ASTM E308).
+    #[test]
+    fn adaptation_is_that_of_the_published_matrices() {
+        let d65 = [0.95047, 1.0, 1.08883];
+        let published = [
+            (
+                [1.09850, 1.0, 0.35585],
+                [
+                    [0.8446965, -0.1179225, 0.3948108],
+                    [-0.1366303, 1.1041226, 0.1291718],
+                    [0.0798489, -0.1348999, 3.1924009],
+                ],
+            ),
+            (
+                [0.96422, 1.0, 0.82521],
+                [
+                    [0.9555766, -0.0230393, 0.0631636],
+                    [-0.0282895, 1.0099416, 0.0210077],
+                    [0.0122982, -0.0204830, 1.3299098],
+                ],
+            ),
+        ];
+        for (white, rows) in published {
+            let ours = adapted(white.into(), d65.into()).transpose().to_cols_array();
+            for (ours, theirs) in ours.iter().zip(rows.as_flattened()) {
+                assert!((ours - theirs).abs() < 1e-6, "{white:?}: {ours}, not {theirs}");
+            }
+        }
+    }
 }

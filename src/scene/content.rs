@@ -15,12 +15,13 @@ use crate::emit::disk::Disk;
 use crate::emit::effects::{EffectStrengths, Effects};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::matter::Accuracy;
+use crate::emit::moment::Shutter;
 use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::Turbulence;
 use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
 use crate::emit::{Emitters, Needs};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, out_of_range};
 use crate::image::{Lut, PixelFormat};
 use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
@@ -71,6 +72,9 @@ impl View {
     }
 }
 
+/// The longest shutter that may be set, scene lengths.
+const MOST_SHUTTER: f64 = 1e300;
+
 /// Everything a frame depends on, but its size.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -97,6 +101,9 @@ pub struct Scene {
     /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time
     /// T = t + H (`physics::geodesic::rain_offset`), which goes on where t ends.
     pub time: f64,
+    /// How long the shutter is open, in scene lengths, half of it before `time`: each sample of a pixel sees matter at
+    /// a moment of its own.
+    pub shutter: f64,
     pub quality: Quality,
     pub view: View,
     /// The facts about rays that outputs ask for beside those that the emitters need (`Scene::for_outputs`).
@@ -143,6 +150,7 @@ impl Default for Scene {
             effects: Effects(Effects::ALL),
             effect_strengths: EffectStrengths::default(),
             time: 0.0,
+            shutter: 0.0,
             quality: Quality::default(),
             view: View::Light,
             also_needs: Needs::default(),
@@ -153,6 +161,17 @@ impl Default for Scene {
 }
 
 impl Scene {
+    /// The longest time, M, that the shutter is open: some hundred orbits about a fast hole.
+    pub const LONGEST_SHUTTER: f64 = 1000.0;
+
+    /// How long the shutter may be open, scene lengths. Errors: INVALID_ARGUMENT.
+    pub fn check_shutter(shutter: f64) -> Result<f64> {
+        match (0.0..=MOST_SHUTTER).contains(&shutter) {
+            true => Ok(shutter),
+            false => Err(out_of_range("shutter", shutter, 0.0, MOST_SHUTTER)),
+        }
+    }
+
     /// The matter that shines and absorbs near the hole, as the scene's view shows it.
     pub fn emitters(&self) -> Emitters {
         let light = self.view == View::Light;
@@ -224,7 +243,7 @@ impl Scene {
         let delayed = self.effects.has(Effects::LIGHT_DELAY);
         let reference_delay = if delayed { r } else { 0.0 };
         let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay;
-        self.volumes_at(When { time, reference_delay, delayed }, Accuracy::EXACT)
+        self.volumes_at(When { time, reference_delay, delayed, shutter: 0.0 }, Accuracy::EXACT)
     }
 
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
@@ -271,7 +290,12 @@ impl Scene {
         // A tiny mass can make the time infinite.
         let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
             + observer.map_or(0.0, |observer| clock_advance(&observer, chart));
-        When { time, reference_delay, delayed }
+        When { time, reference_delay, delayed, shutter: self.open_shutter().0 }
+    }
+
+    /// The shutter in M. A tiny mass makes its time no longer than `LONGEST_SHUTTER`.
+    pub fn open_shutter(&self) -> Shutter {
+        Shutter((self.shutter / self.hole.mass).min(Self::LONGEST_SHUTTER))
     }
 }
 

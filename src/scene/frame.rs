@@ -2,6 +2,7 @@
 //! The part of a frame that an image holds.
 
 use super::Projection;
+use crate::emit::moment::Shutter;
 use crate::error::{Error, Result};
 
 /// The image is this part of a larger frame of `full_width` x `full_height` pixels: its top-left pixel is (x, y).
@@ -60,9 +61,19 @@ impl Region {
 /// finest detail that pixels can show (box: 64 %). Filters that keep more of it have negative lobes, which make dark
 /// rings around stars and the photon ring. CUBE uses the box, because another part of the sky begins across a border of
 /// its faces.
-pub fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
+fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
     let place = lattice(index, count);
     if projection == Projection::Cube { place } else { place.map(|share| 0.5 + spline_quantile(share)) }
+}
+
+/// The place of a sample in its pixel, and the time at which it sees matter less that of the frame, M. While a shutter
+/// is open samples are moments, all through the middle of the pixel: light is filtered there, and one place at a few
+/// moments tells more of what moves than as many places at a moment each.
+pub fn sample_of(index: u32, count: u32, projection: Projection, shutter: Shutter) -> ([f64; 2], f64) {
+    match shutter.is_open() {
+        true => ([0.5; 2], shutter.moment(index, count)),
+        false => (sample_offset(index, count, projection), 0.0),
+    }
 }
 
 /// `count` places in a unit square, spread evenly for any count: even steps in x and steps of the golden ratio, modulo

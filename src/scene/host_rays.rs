@@ -54,7 +54,7 @@ pub fn transfer_ray(scene: &Scene, setup: &TransferSetup, ray: &Ray) -> Transfer
     let own = (setup.emitters.volumes.has_structure() && frame.r != setup.r).then(|| emitters_from(scene, frame.r));
     let emitters = own.as_ref().and_then(|own| own.as_ref().ok()).unwrap_or(&setup.emitters);
     let (frequency_ratio, static_observer) = (ray.frequency_ratio, frame.static_observer());
-    let seen = Seen { frequency_ratio, static_observer, pixel_angle: 0.0, swept: 0.0, rays: 1 };
+    let seen = Seen { frequency_ratio, static_observer, pixel_angle: 0.0, swept: 0.0, rays: 1, moment: 0.0 };
     let (media, medium) = (Media::new(), Medium::default());
     let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium, limit: None };
     let traced = trace_visited(&constants, &state, &setup.settings, &mut along);

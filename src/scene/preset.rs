@@ -270,7 +270,8 @@ mod tests {
 
     /// A scene of which everything differs from the defaults.
     fn odd() -> Scene {
-        let mut scene = Scene { time: 17.0, view: View::Order, effects: Effects(0), disk: None, ..Scene::default() };
+        let mut scene =
+            Scene { time: 17.0, shutter: 0.5, view: View::Order, effects: Effects(0), disk: None, ..Scene::default() };
         scene.hole.spin = 0.4;
         scene.camera.fov_y = 0.3;
         scene.quality.samples_per_pixel = 7;
@@ -289,7 +290,7 @@ mod tests {
             scene.film.check().expect("a valid film");
             scene.sky.check().expect("a valid sky");
             assert_eq!((scene.hole, scene.camera), (before.hole, before.camera), "{preset:?}");
-            assert_eq!((scene.time, scene.view), (17.0, View::Order), "{preset:?}");
+            assert_eq!((scene.time, scene.shutter, scene.view), (17.0, 0.5, View::Order), "{preset:?}");
             assert_eq!(scene.quality, before.quality, "{preset:?}");
             assert_eq!((scene.sky.orientation, scene.sky.seed), (before.sky.orientation, 3), "{preset:?}");
         }

@@ -105,9 +105,12 @@ pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 /// at most. (With u = 0 where there is no crossing, it would be 2 in a corner.)
 pub(crate) const PARTIAL_REACH: f64 = 4.0;
 
+/// How far beyond the disk's outer and inner edge, in 1/r, crossings matter to pixels beside it.
+pub(crate) const DISK_REACH: [f64; 2] = [1.5, 1.15];
+
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
 pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
-    [outer / 1.5, inner * 1.15]
+    [outer / DISK_REACH[0], inner * DISK_REACH[1]]
 }
 
 /// The disk's edges, as pixels beside them see them.

@@ -203,6 +203,7 @@ static void ask_getters(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_get_film(context, &watch->film));
     CHECK_OK(bhr_get_quality(context, &watch->quality));
     CHECK_OK(bhr_get_time(context, &watch->time));
+    CHECK_OK(bhr_get_shutter(context, &watch->shutter));
     CHECK_OK(bhr_get_effects(context, &watch->effects));
     CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT, &watch->effect_strengths[0]));
     CHECK_OK(bhr_get_effect_strength(context, BHR_EFFECT_GRAVITY_SHIFT, &watch->effect_strengths[1]));
@@ -274,8 +275,9 @@ int check_unchanged(const Watch *watch, const char *file, int line, const char *
         wrong = "film";
     } else if (memcmp(&now.quality, &watch->quality, sizeof now.quality) != 0) {
         wrong = "quality";
-    } else if (now.time != watch->time || now.effects != watch->effects || now.view != watch->view) {
-        wrong = "time, effects or view";
+    } else if (now.time != watch->time || now.shutter != watch->shutter || now.effects != watch->effects ||
+               now.view != watch->view) {
+        wrong = "time, shutter, effects or view";
     } else if (memcmp(now.effect_strengths, watch->effect_strengths, sizeof now.effect_strengths) != 0) {
         wrong = "effect strengths";
     } else if (now.region_present != watch->region_present ||

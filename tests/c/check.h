@@ -64,7 +64,7 @@ typedef struct Watch {
     BhrSky        sky;
     BhrFilm       film;
     BhrQuality    quality;
-    double        time;
+    double        time, shutter;
     uint32_t      effects;
     double        effect_strengths[3];
     BhrView       view;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* settings.c -- what is set is read back as it was: time, view and region. The structs that calls fill, and those
- * without defaults, have a function that sets their size and clears the rest; BHR_INIT is that function, and bad
+/* settings.c -- what is set is read back as it was: time, shutter, view and region. The structs that calls fill, and
+ * those without defaults, have a function that sets their size and clears the rest; BHR_INIT is that function, and bad
  * arguments of either are refused. */
 #include "check.h"
 
+#include <math.h>
 #include <string.h>
 
 static void times(BhrContext *context) {
@@ -18,6 +19,24 @@ static void times(BhrContext *context) {
     }
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_time(NULL, &time));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "out_time", bhr_get_time(context, NULL));
+}
+
+static void shutters(BhrContext *context) {
+    static const double all[] = {0.5, 1e300, 0.0}, refused[] = {-0.01, 2e300, NAN, INFINITY, -INFINITY};
+    double              duration = -1.0;
+    CHECK_OK(bhr_get_shutter(context, &duration));
+    CHECK(duration == 0.0, "a new context's shutter is %g", duration);
+    for (size_t i = 0; i < COUNT_OF(all); i++) {
+        CHECK_OK(bhr_set_shutter(context, all[i]));
+        for (size_t j = 0; j < COUNT_OF(refused); j++) {
+            CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "shutter", bhr_set_shutter(context, refused[j]));
+        }
+        CHECK_OK(bhr_get_shutter(context, &duration));
+        CHECK(duration == all[i], "the shutter is %g, not %g", duration, all[i]);
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_shutter(NULL, 0.0));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_shutter(NULL, &duration));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "out_shutter", bhr_get_shutter(context, NULL));
 }
 
 static void views(BhrContext *context) {
@@ -117,6 +136,7 @@ int main(int argc, char **argv) {
     BhrContext *context = check_context(check_begin(argc, argv));
     structs();
     times(context);
+    shutters(context);
     views(context);
     regions(context);
     bhr_context_destroy(context);

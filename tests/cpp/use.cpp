@@ -161,6 +161,7 @@ static void scene() {
     EXPECT(context.effect_strength(bhr::Effects::beaming).value() == 0.25);
     EXPECT(!context.set_effect_strength(bhr::Effects::light_delay, 0.25));
     EXPECT(context.set_time(12.5) && context.time().value() == 12.5);
+    EXPECT(context.set_shutter(0.5) && context.shutter().value() == 0.5 && context.set_shutter(0.0));
     bhr::Quality quality;
     quality.method = bhr::Method::rk4;
     quality.volume_resolution = bhr::VolumeResolution::half;

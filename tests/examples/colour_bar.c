@@ -102,19 +102,15 @@ static void compare(BhrContext *context, BhrView view) {
 }
 
 /* Words do not run into each other, and numbers neither, in the narrowest picture that gets a bar. */
-static void fits(BhrView view) {
+static void fits(const ColourBar *bar) {
     const double width = 300 - 2 * (300 / 12);
-    ColourBar    bar;
-    if (!colour_bar_of_view(view, &bar)) {
-        exit(EXIT_FAILURE);
-    }
-    const size_t words = strlen(bar.title) + (bar.no_value != NULL ? 2 + strlen(bar.no_value) : 0);
-    CHECK((double)(words * CELL_WIDTH) < width, "view %d: the title has no room", (int)view);
-    for (uint32_t i = 1; i < bar.count && bar.steps == 0; i++) {
-        const double apart = (bar.marks[i].share - bar.marks[i - 1].share) * width;
-        const size_t letters = strlen(bar.marks[i].text) + strlen(bar.marks[i - 1].text);
-        CHECK(apart > 0.5 * (double)(letters * CELL_WIDTH) + 2.0, "view %d: %s and %s are too near", (int)view,
-              bar.marks[i - 1].text, bar.marks[i].text);
+    const size_t words = strlen(bar->title) + (bar->no_value != NULL ? 2 + strlen(bar->no_value) : 0);
+    CHECK((double)(words * CELL_WIDTH) < width, "\"%s\" has no room", bar->title);
+    for (uint32_t i = 1; i < bar->count && bar->steps == 0; i++) {
+        const double apart = (bar->marks[i].share - bar->marks[i - 1].share) * width;
+        const size_t letters = strlen(bar->marks[i].text) + strlen(bar->marks[i - 1].text);
+        CHECK(apart > 0.5 * (double)(letters * CELL_WIDTH) + 2.0, "%s: %s and %s are too near", bar->title,
+              bar->marks[i - 1].text, bar->marks[i].text);
     }
 }
 
@@ -148,6 +144,77 @@ static void draw(BhrContext *context, BhrView view, BhrImage *picture) {
     free(before);
 }
 
+/* IEC 61966-2-1. */
+static double light_of(unsigned char code) {
+    const double v = code / 255.0;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/* How far a colour, were it as bright as can be shown, is from that of the bar at its nearest. */
+static double off_bar(const ColourBar *bar, const float light[3]) {
+    const double most = fmax(fmax(light[0], light[1]), light[2]);
+    double       nearest = 1.0;
+    for (int step = 0; step <= 400; step++) {
+        unsigned char rgb[3];
+        double        off = 0.0;
+        bar->colour(step / 400.0, rgb);
+        for (int i = 0; i < 3; i++) {
+            off = fmax(off, fabs(light_of(rgb[i]) - light[i] / most));
+        }
+        nearest = fmin(nearest, off);
+    }
+    return nearest;
+}
+
+/* The bar of temperatures is that of BHR_PRESET_TEACHING alone, and its disk has no other colours. */
+static void explains_temperatures(void) {
+    BhrContextOptions options;
+    BhrContext       *context;
+    ColourBar         bar;
+    BhrImage          seen;
+    double            worst = 0.0;
+    unsigned          counted = 0;
+    BHR_INIT(options);
+    options.backend = BHR_BACKEND_CPU;
+    must(bhr_context_create(BHR_ABI_VERSION, &options, &context));
+    for (BhrPreset preset = BHR_PRESET_CINEMATIC; preset <= BHR_PRESET_TEACHING; preset++) {
+        must(bhr_set_preset(context, preset));
+        CHECK(colour_bar_of_temperatures(context, &bar) == (preset == BHR_PRESET_TEACHING), "preset %d", (int)preset);
+    }
+    fits(&bar);
+    ColourBar other;
+    BhrFilm   film;
+    BHR_INIT(film);
+    must(bhr_set_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT, 0.5));
+    CHECK(!colour_bar_of_temperatures(context, &other), "half of the Doppler shift");
+    must(bhr_set_effect_strength(context, BHR_EFFECT_DOPPLER_SHIFT, 1.0));
+    must(bhr_get_film(context, &film));
+    film.saturation = 0.5;
+    must(bhr_set_film(context, &film));
+    CHECK(!colour_bar_of_temperatures(context, &other), "a grade");
+    film.saturation = 1.0;
+    must(bhr_set_film(context, &film));
+    if (!picture_allocate(&seen, BHR_FORMAT_RGBA32F, COLUMNS, ROWS)) {
+        exit(EXIT_FAILURE);
+    }
+    BhrSky sky;
+    BHR_INIT(sky);
+    sky.flags = 0; /* lines of the grid have colours of their own */
+    must(bhr_set_sky(context, &sky));
+    must(bhr_render_image(context, &seen));
+    for (uint32_t i = 0; i < COLUMNS * ROWS; i++) {
+        const float *light = (const float *)seen.pixels + 4 * (size_t)i;
+        if (light[0] + light[1] + light[2] > 0.1f) {
+            worst = fmax(worst, off_bar(&bar, light));
+            counted++;
+        }
+    }
+    free(seen.pixels);
+    bhr_context_destroy(context);
+    printf("temperatures: %u pixels, off by at most %.3f\n", counted, worst);
+    CHECK(counted > 300 && worst < 0.03, "%u pixels, off by %.3f", counted, worst);
+}
+
 /* No bar: in pictures of light, and in those that are too small. The film's colour map has one. */
 static void is_drawn_where_it_belongs(BhrContext *context, BhrImage *picture) {
     BhrImage small = *picture;
@@ -178,8 +245,11 @@ int main(void) {
     for (BhrView view = BHR_VIEW_REDSHIFT; view <= BHR_VIEW_INTENSITY; view++) {
         compare(context, view);
         draw(context, view, &picture);
-        fits(view);
+        ColourBar bar;
+        CHECK(colour_bar_of_view(view, &bar), "view %d has no bar", (int)view);
+        fits(&bar);
     }
+    explains_temperatures();
     is_drawn_where_it_belongs(context, &picture);
     free(picture.pixels);
     bhr_context_destroy(context);

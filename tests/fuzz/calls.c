@@ -280,7 +280,7 @@ static void scene_call(BhrContext *context) {
         }
         check(bhr_set_film_lut(context, byte() < 250 ? nodes : NULL, mostly(24, byte() % 193), mostly(2, byte())));
         break;
-    case 8: check(bhr_set_time(context, number())); break;
+    case 8: check(bhr_set_time(context, number())), check(bhr_set_shutter(context, number())); break;
     case 9: /* AUTO would take a while */
         check(bhr_set_preset(context, constant(BHR_PRESET_TEACHING)));
         bhr_preset_options_init(&options, sizeof options);

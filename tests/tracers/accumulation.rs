@@ -7,7 +7,10 @@ use crate::random::runs_all;
 use bhr::error::{ErrorKind, Result};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
-use bhr::scene::{AutoExposure, Disk, Film, Scene, ThinLens};
+use bhr::scene::{
+    AutoExposure, Body, Chart, Disk, Effects, Film, HotSpot, Region, Scene, ThinLens, View, Volume, VolumeResolution,
+};
+use glam::DVec3;
 
 type Change = fn(&mut Scene);
 
@@ -126,6 +129,130 @@ fn light_is_the_weighted_mean() {
             assert!((mean - wanted).abs() <= 1e-5 * wanted.max(1e-6), "{tracer}: {mean}, not {wanted}");
         }
         assert!(one != other, "{tracer}: the disk does not turn");
+    }
+}
+
+const SPAN: f64 = 16.0;
+
+/// A scene whose matter moves, and how much of that is not told by turning, at most.
+type Moving = (&'static str, Change, f64);
+
+const MOVING: [Moving; 8] = [
+    ("thin disk", |s| s.disk = Some(Disk { turbulence: 1.0, ..Disk::default() }), 1e-4),
+    ("thin disk, spin 0.9", |s| s.hole.spin = 0.9, 1e-4),
+    (
+        "hot spot",
+        |s| {
+            s.disk = None;
+            s.hot_spots.push(HotSpot { radius: 7.0, azimuth: 1.0, brightness: 30.0, ..HotSpot::default() });
+        },
+        1e-4,
+    ),
+    ("hot spot, light without delay", |s| s.effects.0 &= !Effects::LIGHT_DELAY, 1e-4),
+    (
+        "falling spot, light without delay",
+        |s| {
+            s.hot_spots.clear();
+            s.hot_spots.push(falling());
+        },
+        0.03,
+    ),
+    ("falling spot", |s| s.effects.0 |= Effects::LIGHT_DELAY, 0.03),
+    (
+        "soft disk",
+        |s| {
+            s.hot_spots.clear();
+            s.hole.spin = 0.0;
+            s.volumes.push(Volume { turbulence: 1.0, ..Volume::default() });
+        },
+        0.5,
+    ),
+    (
+        "soft disk, light without delay, half resolution",
+        |s| {
+            s.effects.0 &= !Effects::LIGHT_DELAY;
+            s.quality.volume_resolution = VolumeResolution::Half;
+        },
+        0.7,
+    ),
+];
+
+/// A spot that falls past the hole.
+fn falling() -> HotSpot {
+    let (position, velocity) = (DVec3::new(9.0, 0.0, 0.0), DVec3::new(-0.1, 0.35, 0.0));
+    let body = Body { chart: Chart::Static, position, velocity, time: 0.0 };
+    HotSpot { size: 0.6, brightness: 30.0, free: Some(body.falling()), ..HotSpot::default() }
+}
+
+fn light_of(renderer: &mut Renderer) -> Vec<f64> {
+    let bytes = picture(renderer, PixelFormat::Rgba32F, SIZE, None, false);
+    bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect()
+}
+
+/// A frame whose samples see matter at the moments of a shutter is the mean of as many frames, but for the filaments of
+/// volumes, which are born and fade as at the frame's time; on both tracers alike.
+#[test]
+fn samples_of_a_frame_see_the_moments_of_a_shutter() {
+    let rms = |a: &[f64], b: &[f64]| {
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        (squares / a.len() as f64).sqrt()
+    };
+    let seen = both().map(|(tracer, mut renderer)| {
+        renderer.scene.sky.flags = 0;
+        MOVING.map(|(name, set, most)| {
+            set(&mut renderer.scene);
+            // Everyday those that are rendered fast.
+            if !runs_all() && (name.starts_with("soft") || name == "falling spot") {
+                return Vec::new();
+            }
+            let mean = blurred(&mut renderer, 4, SPAN, PixelFormat::Rgba32F);
+            let mean: Vec<f64> = mean.as_chunks().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect();
+            renderer.scene.time = 0.5 * SPAN;
+            let sharp = light_of(&mut renderer);
+            (renderer.scene.shutter, renderer.scene.quality.samples_per_pixel) = (SPAN, 4);
+            let soft = light_of(&mut renderer);
+            (renderer.scene.shutter, renderer.scene.quality.samples_per_pixel) = (0.0, 1);
+            renderer.scene.time = 0.0;
+            let [moved, off] = [&sharp, &soft].map(|pixels| rms(pixels, &mean));
+            println!("{tracer}, {name}: {moved:.5} without a shutter, {off:.6} with it");
+            assert!(moved > 0.001 && off < most * moved, "{tracer}, {name}: {moved} {off}");
+            soft
+        })
+    });
+    let [cpu, gpu] = &seen;
+    for ((name, ..), (cpu, gpu)) in MOVING.iter().zip(cpu.iter().zip(gpu)) {
+        let off = cpu.iter().zip(gpu).filter(|(a, b)| (*a - *b).abs() > 0.02 * a.max(0.01)).count();
+        assert!(off * 100 <= cpu.len(), "{name}: {off} of {} numbers differ", cpu.len());
+    }
+}
+
+/// Views show the frame's time alone, and parts of a frame the moments of the whole.
+#[test]
+fn a_shutter_leaves_views_alone_and_parts_together() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.disk = Some(Disk { turbulence: 1.0, ..Disk::default() });
+        renderer.scene.hot_spots.push(HotSpot { radius: 7.0, azimuth: 1.0, brightness: 30.0, ..HotSpot::default() });
+        renderer.scene.film.bloom = 0.0;
+        renderer.scene.quality.samples_per_pixel = 3;
+        for view in [View::Redshift, View::Intensity] {
+            renderer.scene.view = view;
+            let [closed, open] = [0.0, SPAN].map(|shutter| {
+                renderer.scene.shutter = shutter;
+                picture(&mut renderer, PixelFormat::R32F, SIZE, None, false)
+            });
+            assert!(closed == open, "{tracer}: {view:?} is another");
+        }
+        renderer.scene.view = View::Light;
+        let [width, height] = SIZE;
+        let whole = picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, false);
+        let half = [width / 2, height / 2];
+        let region = Region { full_width: width, full_height: height, x: half[0], y: half[1] };
+        let part = picture(&mut renderer, PixelFormat::Rgba32F, half, Some(region), false);
+        let row = 16 * half[0] as usize;
+        for (y, part) in part.chunks_exact(row).enumerate() {
+            let begin = 16 * ((half[1] as usize + y) * width as usize + half[0] as usize);
+            assert!(part == &whole[begin..begin + row], "{tracer}: row {y} of a part is another");
+        }
     }
 }
 

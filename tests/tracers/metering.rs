@@ -5,9 +5,11 @@
 use crate::frames::{both, picture};
 use crate::random::runs_all;
 use bhr::error::ErrorKind;
-use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
-use bhr::scene::{AutoExposure, Film, Region, Scene, ToneMap};
+use bhr::scene::{AutoExposure, Film, Region, Scene, Sky, ToneMap};
+use bhr::sky::SkyMap;
+use std::sync::Arc;
 
 type Change = fn(&mut Scene);
 
@@ -105,8 +107,7 @@ fn light_that_is_not_kept_is_metered_alike() {
     }
 }
 
-/// The shadow keeps a dark edge: no pixel of it is brighter than the same film without local tone mapping shows, but
-/// for what all that is as dark gets; and black stays black.
+/// Black stays black, up to the edge of the shadow, and what was clipped is not.
 #[test]
 fn the_shadow_has_no_halo() {
     for (tracer, mut renderer) in both() {
@@ -118,12 +119,44 @@ fn the_shadow_has_no_halo() {
         let (local, ev) = metered(&mut renderer, size);
         assert_eq!(ev, 0.0);
         let pixels = || plain.chunks_exact(4).zip(local.chunks_exact(4));
-        let black = pixels().filter(|(plain, _)| plain[..3] == [0; 3]).count();
-        let lifted = pixels().filter(|(plain, local)| plain[..3] == [0; 3] && local[..3].iter().any(|v| *v > 64));
-        assert!(black > 500 && lifted.clone().count() == 0, "{tracer}: {} of {black} are lifted", lifted.count());
+        let light = picture(&mut renderer, PixelFormat::Rgba32F, size, None, false);
+        let dark = light.as_chunks::<16>().0.iter().map(|pixel| bytemuck::cast::<_, [f32; 4]>(*pixel)[..3] == [0.0; 3]);
+        let dark = dark.zip(local.chunks_exact(4)).filter(|(is_dark, _)| *is_dark).collect::<Vec<_>>();
+        let lifted = dark.iter().filter(|(_, local)| local[..3] != [0; 3]).count();
+        assert!(dark.len() > 500 && lifted == 0, "{tracer}: {lifted} of {} are lifted", dark.len());
         let white = |pixel: &[u8]| pixel[..3].contains(&255);
         let (burnt, saved) = (pixels().filter(|p| white(p.0)).count(), pixels().filter(|p| white(p.1)).count());
         assert!(burnt > 100 && saved * 3 < burnt, "{tracer}: {burnt} clipped pixels became {saved}");
+    }
+}
+
+/// No halo, bright or dark, lies about the disk and the shadow: a sky that is everywhere as bright stays so, beside a
+/// disk of a hundred times its light and beside black.
+#[test]
+fn a_flat_sky_stays_flat_beside_disk_and_shadow() {
+    for (tracer, mut renderer) in both() {
+        let texels = [0.02_f32; 4 * 64 * 32];
+        let map = ImageRef::new(Layout::packed(PixelFormat::Rgba32F, 64, 32), bytemuck::cast_slice(&texels)).unwrap();
+        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&map).unwrap().into()));
+        renderer.scene.sky.flags = Sky::MAP;
+        // The light of the map as it is, and of the disk.
+        renderer.scene.effects.0 = 0;
+        let film = Film { tone_map: ToneMap::None, bloom: 0.0, exposure_ev: 2.0, ..renderer.scene.film };
+        renderer.scene.film = Film { highlights: 0.7, shadows: 0.7, ..film };
+        let size = [480, 270];
+        let (local, _) = metered(&mut renderer, size);
+        let light = picture(&mut renderer, PixelFormat::Rgba32F, size, None, false);
+        let green = light.as_chunks::<16>().0.iter().map(|pixel| bytemuck::cast::<_, [f32; 4]>(*pixel)[1]);
+        let is_sky = |v: f32| (v / 0.02 - 1.0).abs() < 1e-3;
+        let mut codes: Vec<u8> =
+            green.zip(local.chunks_exact(4)).filter(|(v, _)| is_sky(*v)).map(|(_, pixel)| pixel[1]).collect();
+        codes.sort_unstable();
+        let at = |share: f64| codes[(share * (codes.len() - 1) as f64) as usize];
+        let told = [0.0, 0.01, 0.5, 0.99, 1.0].map(at);
+        println!("{tracer}: {} pixels of sky, the darkest, 1 %, median, 99 %, the brightest: {told:?}", codes.len());
+        let [darkest, dark, median, _, brightest] = told.map(i32::from);
+        let is_flat = median - darkest <= 10 && median - dark <= 3 && brightest - median <= 2;
+        assert!(codes.len() > 30_000 && is_flat, "{tracer}: {told:?}");
     }
 }
 

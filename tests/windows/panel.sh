@@ -349,6 +349,44 @@ panel_compares() {
         panel_close $((left + 100)) 200
 }
 
+# panel_red_to_blue FILE LEFT RIGHT: mean colours of two parts.
+panel_red_to_blue() {
+    local part means=()
+    for part in "$2" "$3"; do
+        means+=("$(convert "$1" -crop "$part" +repage -format '%[fx:255*(mean.r-mean.b)]' info:)")
+    done
+    awk -v left="${means[0]}" -v right="${means[1]}" \
+        'BEGIN { print "red over blue: " left ", " right; exit !(left > 5 && right < -10) }'
+}
+
+# panel_colours FILE PART: how many it has.
+panel_colours() { convert "$1" -crop "$2" +repage -format '%k' info:; }
+
+# panel_only_left FILE LEFT RIGHT: one part has colours, and the other is empty.
+panel_only_left() { [ "$(panel_colours "$1" "$2")" -gt 50 ] && [ "$(panel_colours "$1" "$3")" -eq 1 ]; }
+
+# False colours are explained beneath the picture, which makes room for that: red to blue for the frequency's ratio.
+# Where A has them and B has not, A's half alone is explained.
+panel_explains_colours() {
+    local folder=$scratch/panel-colours shot=$scratch/panel-colours.png g='frequency ratio g = seen / sent'
+    local left top width height whole foot
+    mkdir -p -- "$folder" && cd -- "$folder" && echo 'view = "redshift"' >panel.toml &&
+        panel_open --size 1280x720 --paused --backend cpu && panel_find || return 1
+    read -r _ _ _ _ whole <<<"$(panel_last '^picture ')"
+    panel_press 188 30 && panel_says 1 "^colours none [|] $g\$" || return 1
+    read -r _ left top width height <<<"$(panel_last '^picture ')"
+    foot=$((whole - height))
+    [ "$foot" -ge 40 ] && [ "$foot" -le 70 ] || panel_complain "the bar has $foot pixels" || return 1
+    # Half of the foot, in its middle, is the bar and the text beside it.
+    top=$((top + height + foot / 4)) height=$((foot / 2))
+    panel_shows "$shot" panel_red_to_blue "$shot" $((width / 6))x$height+$((left + 30))+$top \
+        $((width / 6))x$height+$((left + width - width / 6 - 30))+$top || return 1
+    panel_click_on 'A and B/keep as A' && panel_says 1 "^colours $g [|] $g\$" && : >panel.toml &&
+        panel_press 188 30 && panel_says 1 "^colours $g [|] none\$" &&
+        panel_shows "$shot" panel_only_left "$shot" $((width / 2 - 20))x$height+$left+$top \
+            $((width / 2 - 20))x$height+$((left + width / 2 + 10))+$top && panel_close $((left + 100)) 200
+}
+
 # The share of bright pixels beside the exposure is that of the picture, as another program counts it.
 panel_counts_light() {
     local said counted

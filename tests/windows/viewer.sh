@@ -137,6 +137,34 @@ viewer_shows_keys() {
         xdotool key h && viewer_until 60 viewer_hides_keys && viewer_close
 }
 
+viewer_bar() { xdotool search --all --onlyvisible --pid "$viewer_pid" --name '^bhr: colours$'; }
+viewer_hides_bar() { ! viewer_bar; }
+# viewer_bar_lies WIDTHxHEIGHT X,Y
+viewer_bar_lies() {
+    local place
+    place=$(xdotool getwindowgeometry "$(viewer_bar)") && grep -q -e "Geometry: $1\$" <<<"$place" &&
+        grep -q -e "Position: $2 " <<<"$place"
+}
+# viewer_bar_shows X OTHER: red at one column and blue at the other.
+viewer_bar_shows() {
+    import -window "$(viewer_bar)" "$scratch/bar.png" && convert "$scratch/bar.png" -format \
+        "%[fx:255*p{$1,20}.r] %[fx:255*p{$1,20}.b] %[fx:255*p{$2,20}.r] %[fx:255*p{$2,20}.b]" info: |
+        awk '{ exit !($1 > 2 * $2 && $4 > 2 * $3) }'
+}
+
+# A bar says what false colours mean: at the window's foot as soon as V has chosen some, following its size and place;
+# keys, wheel and drags over it are the window's; and it goes with them. The bar's ends are a twelfth from the window's.
+viewer_explains_colours() {
+    viewer_open --size 640x360 && viewer_hides_bar && xdotool key space v && viewer_until 60 viewer_bar &&
+        viewer_until 60 viewer_bar_lies 640x44 0,316 && viewer_until 60 viewer_bar_shows 55 584 || return 1
+    xdotool windowsize "$viewer_window" 720 400 windowmove "$viewer_window" 80 60 &&
+        viewer_until 60 viewer_bar_lies 720x44 80,416 && viewer_until 60 viewer_bar_shows 62 657 || return 1
+    xdotool mousemove 200 440 key m && viewer_until 60 viewer_says '^mass 1.1' && xdotool click 4 &&
+        viewer_until 60 viewer_title_says 'r 2[0-4].* M' || return 1
+    xdotool key v v v v v v v && viewer_until 60 viewer_says '^view: light' && viewer_until 60 viewer_hides_bar &&
+        viewer_close
+}
+
 # A preset has the matter that --matter says, with auto the one that the rate allows, and the title says which. On the
 # CPU, as each preset is a kernel on the GPU.
 viewer_chooses_matter() {

@@ -21,7 +21,6 @@ from ._constants import (
     AdapterFlags,
     Backend,
     BackendLike,
-    Effects,
     Format,
     FormatLike,
     OutputKind,
@@ -40,7 +39,8 @@ from ._frame import Frame, _path, output_of, target_of
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Error, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
-from ._names import flags, member
+from ._moment import Moment
+from ._names import member
 from ._scene_text import SceneText
 from ._struct import Vector, VectorLike, doubles, new
 from ._structs import (
@@ -64,7 +64,7 @@ _LOGGER.addHandler(logging.NullHandler())
 _contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
-class Context(SceneText, Tracing):
+class Context(SceneText, Moment, Tracing):
     """A scene and what traces it. A new one shows a hole of mass 1 without spin, with a golden disk, before the stars.
 
     Setting an attribute changes the scene; an attribute that is read is a copy, which can be set again after `replace`.
@@ -329,30 +329,6 @@ class Context(SceneText, Tracing):
         with self._quality_kept():
             self._set(lib.bhr_set_quality, given)
 
-    @property
-    def effects(self) -> Effects:
-        """The relativistic effects that colour the light. Default: all."""
-        effects = ffi.new("uint32_t *")
-        with self._gate as context:
-            check(lib.bhr_get_effects(context, effects))
-        return Effects(effects[0])
-
-    @effects.setter
-    def effects(self, effects: Effects | str) -> None:
-        self._set(lib.bhr_set_effects, flags(Effects, effects, "effects") & Effects.ALL)
-
-    def effect_strength(self, effect: Effects | str) -> float:
-        """How strongly one effect shows, 0 to 1; 1 is physics (bhr_get_effect_strength)."""
-        strength = ffi.new("double *")
-        with self._gate as context:
-            check(lib.bhr_get_effect_strength(context, flags(Effects, effect, "effect"), strength))
-        return float(strength[0])
-
-    def set_effect_strength(self, effects: Effects | str, strength: float) -> None:
-        """Sets how strongly the Doppler shift, gravity's shift or beaming show, 0 to 1 (bhr_set_effect_strength)."""
-        with self._gate as context:
-            check(lib.bhr_set_effect_strength(context, flags(Effects, effects, "effects"), strength))
-
     def set_preset(self, preset: PresetLike) -> None:
         """Gives disk, sky, film and effects the values of a named look."""
         self._set(lib.bhr_set_preset, member(Preset, preset, "preset"))
@@ -381,18 +357,6 @@ class Context(SceneText, Tracing):
         with self._gate as context:
             check(lib.bhr_set_preset_with(context, look, options, chosen))
         return PresetMatter(chosen[0])
-
-    @property
-    def time(self) -> float:
-        """The scene's time in scene lengths, which turns the disk. Default 0."""
-        time = ffi.new("double *")
-        with self._gate as context:
-            check(lib.bhr_get_time(context, time))
-        return float(time[0])
-
-    @time.setter
-    def time(self, time: float) -> None:
-        self._set(lib.bhr_set_time, time)
 
     @property
     def view(self) -> View:

@@ -72,6 +72,10 @@ impl SceneFile {
     pub fn updated(&self, scene: &Scene, region: Option<Region>, files: &Files) -> Result<Self> {
         let mut now = Self::of(scene, region, files)?;
         now.values.render = self.values.render;
+        if self.values.grain_moves {
+            now.values.grain_moves = true;
+            now.values.film.grain_seed = self.values.film.grain_seed;
+        }
         self.put_shots(&mut now.values);
         let is_there = |track: &&Track| now.values.bytes(track.section).is_some();
         now.tracks = self.tracks.iter().filter(is_there).cloned().collect();
@@ -109,7 +113,7 @@ impl SceneFile {
 
     /// Whether anything is another at another time.
     pub fn moves(&self) -> bool {
-        self.values.shots.len() > 1 || !self.tracks.is_empty()
+        self.values.shots.len() > 1 || !self.tracks.is_empty() || self.values.grain_moves
     }
 
     /// Whether the camera is another one at another time, or its place is: then it is the text's, whatever a host has
@@ -152,6 +156,7 @@ impl SceneFile {
     pub fn moved(&self, seconds: f64, scene: &Scene, region: Option<Region>) -> Result<Moment> {
         let mut values = Values::of(scene, region);
         self.put_shots(&mut values);
+        values.grain_moves = self.values.grain_moves;
         self.evaluated(values, seconds, scene).map_err(|misfit| explained(misfit, seconds))
     }
 
@@ -164,6 +169,9 @@ impl SceneFile {
                 return Err((track.section, Error::state(gone)));
             };
             track.field.set(bytes, &value);
+        }
+        if values.grain_moves {
+            values.film.grain_seed = seconds;
         }
         let (scene, region) = values.set_in(scene, seconds)?;
         Ok(Moment { scene, region })

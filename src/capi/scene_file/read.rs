@@ -430,11 +430,17 @@ impl Reader {
     }
 
     fn film(&mut self, values: &mut Values, given: &Given<'_>) -> Checked<()> {
-        self.struct_of(values, Section::Film, given, &["glare_is_optional", "lut"])?;
+        self.struct_of(values, Section::Film, given, &["glare_is_optional", "grain_moves", "lut"])?;
         let has = |name: &str| given.get_ref().get(name).is_some();
         values.glare_is_optional &= !(has("bloom") || has("beam_fwhm"));
         if let Some(optional) = given.get_ref().get("glare_is_optional") {
             values.glare_is_optional = boolean("glare_is_optional", optional)?;
+        }
+        let is_grain = |track: &Track| track.section == Section::Film && track.field.name == "grain";
+        let has_grain = has("grain") && (values.film.grain != 0.0 || self.tracks.iter().any(is_grain));
+        values.grain_moves = has_grain && !has("grain_seed");
+        if let Some(moves) = given.get_ref().get("grain_moves") {
+            values.grain_moves = boolean("grain_moves", moves)?;
         }
         Ok(())
     }
@@ -444,7 +450,7 @@ impl Reader {
     fn check(&self, file: &SceneFile) -> std::result::Result<(), (Misfit, Option<f64>)> {
         let scene = Scene::default();
         let at = |seconds: f64| file.evaluated(file.values.clone(), seconds, &scene).map(|_| ());
-        if !file.moves() {
+        if file.tracks.is_empty() && file.values.shots.len() < 2 {
             return at(0.0).map_err(|misfit| (misfit, None));
         }
         let times = times_of(&file.tracks, &file.values);
@@ -473,11 +479,12 @@ fn times_of(tracks: &[Track], values: &Values) -> Vec<f64> {
 }
 
 /// The keys of a scene's text that are no fields.
-const KNOWN: [&str; 18] = [
+const KNOWN: [&str; 19] = [
     "version",
     "preset",
     "preset_matter",
     "time",
+    "shutter",
     "effects",
     "effect_strengths",
     "view",

@@ -118,6 +118,7 @@ fn random_values(random: &mut Random) -> Values {
     }
     values.of_preset = [None, Some(0), Some(1)][(random.unit() * 3.0) as usize % 3];
     values.glare_is_optional = random.unit() < 0.5;
+    values.grain_moves = random.unit() < 0.5;
     values
 }
 
@@ -318,6 +319,26 @@ fn what_moves_is_saved_as_it_was_loaded() {
     assert_eq!(error.kind, ErrorKind::InvalidState, "{error}");
     assert!(error.message.contains("[[volumes]] 1"), "{error}");
     assert_eq!(file.render().unwrap().width, 300);
+}
+
+/// The grain of a film is another one in each frame, unless the text has a seed or says that it stays.
+#[test]
+fn grain_moves_with_the_film() {
+    let seeds = |text: &str| [0.0, 0.04, 7.0].map(|seconds| scene_at(&parsed(text), seconds).film.grade.grain_seed);
+    assert_eq!(seeds("[film]\ngrain = 0.2"), [0.0, 0.04, 7.0]);
+    assert_eq!(seeds("[film]\ngrain = { keys = [[0, 0], [5, 1]] }"), [0.0, 0.04, 7.0]);
+    assert_eq!(seeds("[film]\ngrain = 0.2\ngrain_seed = 3"), [3.0; 3]);
+    assert_eq!(seeds("[film]\ngrain = 0.2\ngrain_moves = false"), [0.0; 3]);
+    assert_eq!(seeds("[film]\ngrain = 0.2\ngrain_seed = 3\ngrain_moves = true"), [0.0, 0.04, 7.0]);
+    assert_eq!(seeds("[film]\nbloom = 0.1"), [0.0; 3]);
+    assert_eq!(seeds("[film]\ngrain = 0"), [0.0; 3]);
+    let file = parsed("[film]\ngrain = 0.2");
+    assert!(file.moves() && !parsed("[film]\nbloom = 0.1").moves());
+    let later = file.moved(7.0, &scene_at(&file, 1.0), None).unwrap().scene;
+    assert_eq!(later.film.grade.grain_seed, 7.0);
+    let text = file.updated(&later, None, &Files::default()).unwrap().text(None).unwrap();
+    assert_eq!(text, file.text(None).unwrap());
+    assert_eq!(seeds(&text), [0.0, 0.04, 7.0], "{text}");
 }
 
 /// A camera that does not move is a host's as soon as it sets another, and so is the rest of one whose field of view

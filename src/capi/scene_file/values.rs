@@ -18,11 +18,12 @@ use arrayvec::ArrayVec;
 use glam::DVec3;
 use std::mem::offset_of;
 
-/// The values of bhr_set_time, bhr_set_effects, bhr_set_view and bhr_set_effect_strength.
+/// The values of bhr_set_time, bhr_set_shutter, bhr_set_effects, bhr_set_view and bhr_set_effect_strength.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct Moment {
     pub time: f64,
+    pub shutter: f64,
     pub effects: u32,
     pub view: i32,
     /// In the order of the bits.
@@ -144,10 +145,11 @@ const fn field(name: &'static str, offset: usize, kind: Kind) -> Field {
     Field { name, offset, kind }
 }
 
-// SAFETY: repr(C), 40 bytes without padding, numbers only.
+// SAFETY: repr(C), 48 bytes without padding, numbers only.
 unsafe impl Described for Moment {
     const FIELDS: &'static [Field] = &[
         field("time", offset_of!(Moment, time), Kind::Numbers(1)),
+        field("shutter", offset_of!(Moment, shutter), Kind::Numbers(1)),
         field("effects", offset_of!(Moment, effects), Kind::Bits(EFFECTS)),
         field("view", offset_of!(Moment, view), Kind::Word(VIEWS)),
         field("effect_strengths", offset_of!(Moment, effect_strengths), Kind::Numbers(3)),
@@ -344,6 +346,8 @@ pub struct Values {
     pub film: BhrFilm,
     /// [`Film::glare_is_optional`].
     pub glare_is_optional: bool,
+    /// Whether the film's `grain_seed` is the time in seconds, so that each frame of a film has a grain of its own.
+    pub grain_moves: bool,
     pub quality: BhrQuality,
     pub region: Option<BhrRegion>,
     pub render: Option<Render>,
@@ -357,6 +361,7 @@ impl Values {
         Self {
             moment: Moment {
                 time: scene.time,
+                shutter: scene.shutter,
                 effects: scene.effects.0,
                 view: view::number(scene.view),
                 effect_strengths: scene.effect_strengths.to_array(),
@@ -370,6 +375,7 @@ impl Values {
             sky: scene.sky.into(),
             film: scene.film.into(),
             glare_is_optional: scene.film.glare_is_optional,
+            grain_moves: false,
             quality: scene.quality.into(),
             region: region.map(Into::into),
             render: None,
@@ -455,8 +461,9 @@ impl Values {
         let moved = self.shots.get(shot).map(|shot| shot.camera(&scene)).transpose();
         let (camera, passed) = moved.map_err(at(Section::Camera(shot)))?.unwrap_or((scene.camera, 0.0));
         scene.camera = camera;
-        let Moment { time, effects, view, effect_strengths } = self.moment;
+        let Moment { time, shutter, effects, view, effect_strengths } = self.moment;
         scene.time = check_finite(time + passed, "time").map_err(at(Section::Moment))?;
+        scene.shutter = Scene::check_shutter(shutter).map_err(at(Section::Moment))?;
         scene.effects = Effects(effects);
         scene.effect_strengths = EffectStrengths::checked(effect_strengths).map_err(at(Section::Moment))?;
         scene.view = view::view(view, "view").map_err(at(Section::Moment))?;

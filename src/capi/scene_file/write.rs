@@ -30,6 +30,9 @@ pub(super) fn write(file: &SceneFile, folder: Option<&Path>) -> Result<String> {
                 if file.values.glare_is_optional {
                     text += "glare_is_optional = true\n";
                 }
+                if file.values.grain_moves {
+                    text += "grain_moves = true\n";
+                }
                 write_path(("lut", "the film's LUT"), file.lut.as_deref(), folder, &mut text)?;
             }
             Section::Sky => write_path(("map", "the sky's map"), file.map.as_deref(), folder, &mut text)?,

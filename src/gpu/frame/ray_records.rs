@@ -4,6 +4,7 @@
 use super::tracer::GpuTracer;
 use crate::allocate::collected;
 use crate::emit::medium::Media;
+use crate::emit::moment::Shutter;
 use crate::emit::{Crossing, EmissionPoint};
 use crate::error::{Error, Result};
 use crate::gpu::frame::passes::picture::RecordConsumer;
@@ -107,9 +108,17 @@ impl GpuTracer {
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed
-            .passes
-            .write(device, bytemuck::bytes_of(&pass_of(request, whole, (0, 1), scene.camera.projection, 0, [0, 0])))?;
+        fixed.passes.write(
+            device,
+            bytemuck::bytes_of(&pass_of(
+                request,
+                whole,
+                (0, 1),
+                (scene.camera.projection, Shutter::default()),
+                0,
+                [0, 0],
+            )),
+        )?;
         let mut encoder = device.encoder("records")?;
         if let Some(bake) = tables.bake(device, &self.kernels, &setup)? {
             bake.encode(&mut encoder);

@@ -209,6 +209,7 @@ impl GpuTracer {
             handed: None,
             samples,
             curve_samples: curve_samples(setup.variants.shade.volumes),
+            shutter: scene.open_shutter(),
             projection,
             source,
             steps,

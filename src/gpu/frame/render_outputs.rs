@@ -4,6 +4,7 @@
 //! than those of the picture, whose bytes stay what they are without outputs. Knows no host memory.
 
 use super::tracer::GpuTracer;
+use crate::emit::moment::Shutter;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};
@@ -108,7 +109,7 @@ impl GpuTracer {
         while done < plan.count() {
             if under_way.len() < AHEAD && submitted < plan.count() {
                 let tile = plan.tile(submitted);
-                let pass = pass_of(request, tile, (0, 1), scene.camera.projection, 0, [0, 0]);
+                let pass = pass_of(request, tile, (0, 1), (scene.camera.projection, Shutter::default()), 0, [0, 0]);
                 let source = setup.record_setup.source;
                 let begins = submitted == 0;
                 under_way.push_back(buffers.submit(

@@ -189,6 +189,8 @@ fn all() -> Vec<(&'static str, Value)> {
         LEAST_SLOPE: f32 = cell::LEAST_SLOPE;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
         PARTIAL_REACH: f32 = refine::PARTIAL_REACH;
+        DISK_REACH_OUTWARDS: f32 = refine::DISK_REACH[0];
+        DISK_REACH_INWARDS: f32 = refine::DISK_REACH[1];
 
         BLACKBODY_SIZE: u32 = blackbody::BLACKBODY_SIZE;
         MIN_TEMPERATURE: f32 = blackbody::MIN_TEMPERATURE;

@@ -54,7 +54,7 @@ fn volumes() -> &'static Volumes {
         let halo = Volume { shape: Shape::Halo, turbulence: 0.0, ..disk };
         let (flow, thickness) = (FlowLaw::Outflow, 0.02);
         let jet = Volume { shape: Shape::Jet, flow, thickness, turbulence: 0.6, seed: u64::MAX, ..disk };
-        let when = When { time: 12_345.0, reference_delay: 100.0, delayed: true };
+        let when = When { time: 12_345.0, reference_delay: 100.0, delayed: true, shutter: 0.0 };
         Volumes::new(&[disk, torus, halo, jet], &[], 0.7, EffectStrengths::default(), when, Accuracy::PICTURE)
     })
 }

@@ -84,7 +84,7 @@ pub fn group() -> Group {
                 i.even(0.1, 1.0);
             },
             |i, o| {
-                let when = When { time: 0.0, reference_delay: 0.0, delayed: false };
+                let when = When::default();
                 let spot = SpotMatter::new(&HotSpot::default(), 0.0, &when, None).expect("it is on a circle");
                 let (r, cos, azimuth) = (i.x(1), i.x(2), i.x(3));
                 let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();

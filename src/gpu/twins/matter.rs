@@ -376,7 +376,7 @@ fn shapes() -> Vec<super::Twin> {
             },
             |i, o| {
                 let spot = HotSpot { radius: i.x(0), size: i.x(1), ..HotSpot::default() };
-                let when = When { time: 0.0, reference_delay: 0.0, delayed: false };
+                let when = When::default();
                 let spot = SpotMatter::new(&spot, 0.0, &when, None).expect("it is on a circle");
                 let spot =
                     SpotMatter { radius: i.x(0), size: i.x(1), azimuth: i.x(2), angular_velocity: i.x(3), ..spot };
@@ -406,7 +406,7 @@ fn shapes() -> Vec<super::Twin> {
             |i, o| {
                 let stretch = Stretch { u: [i.x(7), i.x(8)], cos: [i.x(9), i.x(10)], swept: i.x(11) };
                 if i.word(12) == SHAPE_SPOT {
-                    let when = When { time: 0.0, reference_delay: 0.0, delayed: false };
+                    let when = When::default();
                     let spot = SpotMatter::new(&HotSpot::default(), 0.0, &when, None).expect("it is on a circle");
                     o.near(SpotMatter { size: i.x(1), ..spot }.cells(&stretch), 1.0);
                     return;
@@ -514,8 +514,14 @@ pub fn group() -> Group {
             },
             |i, o| {
                 let (c, observer) = (constants(i), state(i, STATE));
-                let seen =
-                    Seen { frequency_ratio: 1.0, static_observer: None, pixel_angle: i.x(29), swept: i.x(28), rays: 1 };
+                let seen = Seen {
+                    frequency_ratio: 1.0,
+                    static_observer: None,
+                    pixel_angle: i.x(29),
+                    swept: i.x(28),
+                    rays: 1,
+                    moment: 0.0,
+                };
                 let there = State { u: i.x(23), du: i.x(24), n: i.v3(25), ..observer };
                 let width = seen.footprint(&c, &observer, &there);
                 // Rays that come straight from where they are bend by the difference of two angles.

@@ -7,7 +7,7 @@ use super::light::EmissionPoint;
 use super::run::Image;
 use super::scenes::{self, FRAMES, Kind, push_place, views};
 use super::{Group, light, sky, twin};
-use crate::cpu::shade::Shader;
+use crate::cpu::shade::{Shader, Shading};
 use crate::emit::Crossing;
 use crate::emit::medium::Medium;
 use crate::emit::thin_disk::profile_row;
@@ -162,13 +162,13 @@ fn record(i: &Inputs) -> Record {
 }
 
 fn light_of_record(i: &Inputs, o: &mut Outputs) {
-    let [r, g, b, alpha] = shader(i, 0).shade_record(&record(i), i.x(1), i.x(2));
+    let [r, g, b, alpha] = Shading { shader: shader(i, 0), moment: 0.0 }.shade_record(&record(i), i.x(1), i.x(2));
     o.all([r, g, b], 1e-3);
     o.near(alpha, 1.0);
 }
 
 fn value(i: &Inputs, o: &mut Outputs) {
-    let [value, ..] = shader(i, i.word(VIEW)).shade_record(&record(i), i.x(1), i.x(2));
+    let [value, ..] = Shading { shader: shader(i, i.word(VIEW)), moment: 0.0 }.shade_record(&record(i), i.x(1), i.x(2));
     o.near(value, 1.0);
 }
 

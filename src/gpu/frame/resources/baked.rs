@@ -291,7 +291,7 @@ mod tests {
         let adapter = adapters(Search::Only(Backend::Vulkan), false).into_iter().next().expect("a Vulkan adapter");
         let tracer = GpuTracer::new(adapter).unwrap();
         let (device, kernels) = (&tracer.device, &tracer.kernels);
-        let when = When { time: 777.0, reference_delay: 0.0, delayed: true };
+        let when = When { time: 777.0, reference_delay: 0.0, delayed: true, shutter: 0.0 };
         let disk = Volume { seed: 5, ..Volume::default() };
         let (flow, thickness) = (FlowLaw::AngularMomentum, 0.3);
         let torus = Volume { shape: Shape::Torus, flow, thickness, ..disk };

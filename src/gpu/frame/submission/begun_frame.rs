@@ -3,6 +3,7 @@
 
 use super::delivery::Delivery;
 use super::handed::Handed;
+use crate::emit::moment::Shutter;
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::semaphores::FrameSync;
@@ -37,6 +38,7 @@ pub struct BegunFrame {
     pub(in crate::gpu) samples: u32,
     /// Samples of a pixel that the critical curve runs through.
     pub(in crate::gpu) curve_samples: u32,
+    pub(in crate::gpu) shutter: Shutter,
     pub(in crate::gpu) projection: Projection,
     pub(in crate::gpu) source: RecordSource,
     pub(in crate::gpu) steps: Steps,

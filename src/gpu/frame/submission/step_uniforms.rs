@@ -4,6 +4,7 @@
 
 use super::begun_frame::BegunFrame;
 use super::delivery::Delivery;
+use crate::emit::moment::Shutter;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::wgpu_device::Device;
@@ -24,7 +25,8 @@ pub fn place_of_outputs(step: &Step) -> usize {
 fn pass_uniforms(device: &Device, frame: &BegunFrame, step: &Step) -> impl Iterator<Item = PassUniform> {
     let pixel_size = frame.request.format.bytes_per_pixel();
     let of = move |(tile, sample, i)| {
-        let pass = pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin);
+        let lens = (frame.projection, frame.shutter);
+        let pass = pass_of(&frame.request, tile, (sample, frame.samples), lens, i, step.light_origin);
         let [pixels_first, pixels_row] = match &frame.delivery {
             Delivery::Rows(rows) => {
                 let place = rows.place(device, tile);
@@ -38,7 +40,8 @@ fn pass_uniforms(device: &Device, frame: &BegunFrame, step: &Step) -> impl Itera
     let developed = (step.develops.unwrap_or(step.shades), 0, 0);
     let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
     // The ray of an output goes through the pixel's centre.
-    let centred = pass_of(&frame.request, step.shades, (0, 1), frame.projection, 0, step.light_origin);
+    let at_once = (frame.projection, Shutter::default());
+    let centred = pass_of(&frame.request, step.shades, (0, 1), at_once, 0, step.light_origin);
     [of(developed)].into_iter().chain(shaded.map(of)).chain([centred])
 }
 

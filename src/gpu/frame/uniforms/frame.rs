@@ -7,6 +7,7 @@ use super::matter::{MatterUniform, uniforms_of};
 use crate::emit::Emitters;
 use crate::emit::bands::MOST_BANDS;
 use crate::emit::half::Evenness;
+use crate::emit::moment::Shutter;
 use crate::emit::thin_disk::SoftEdges;
 use crate::error::Result;
 use crate::gpu::kernel::sizes::{MOST_MATTER, OFFSET_PAIRS};
@@ -17,7 +18,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::rain::doran_turn;
 use crate::physics::trace::Settings;
-use crate::scene::frame::sample_offset;
+use crate::scene::frame::sample_of;
 use crate::scene::observer::Lens;
 use crate::scene::refine::{CURVE_SAMPLES, DiskEdges};
 use crate::scene::{EmissionLaw, Projection, Scene};
@@ -133,6 +134,8 @@ pub struct PassUniform {
     pub image_origin: [u32; 2],
     pub pixels_first: u32,
     pub pixels_row: u32,
+    pub moment: f32,
+    pub unused: u32,
 }
 
 #[cfg(test)]
@@ -151,7 +154,7 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         static_angular_velocity, eye, rain_triad, offset_poles, offset_terms, bands, depth_u, matter_count,
         matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, curve_samples, light_origin,
-        image_origin, pixels_first, pixels_row);
+        image_origin, pixels_first, pixels_row, moment, unused);
     [frame, pass]
 }
 
@@ -337,12 +340,12 @@ pub fn pass_of(
     request: &FrameRequest,
     tile: Tile,
     (sample, samples): (u32, u32),
-    projection: Projection,
+    (projection, shutter): (Projection, Shutter),
     slot: u32,
     light_origin: [u32; 2],
 ) -> PassUniform {
     let region = request.region;
-    let [dx, dy] = sample_offset(sample, samples, projection);
+    let ([dx, dy], moment) = sample_of(sample, samples, projection, shutter);
     PassUniform {
         origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
         size: [tile.width + 2, tile.height + 2],
@@ -355,5 +358,7 @@ pub fn pass_of(
         image_origin: [tile.x, tile.y],
         pixels_first: 0,
         pixels_row: 0,
+        moment: moment as f32,
+        unused: 0,
     }
 }

@@ -126,6 +126,7 @@ impl From<&SpotMatter> for MatterUniform {
                 radius: spot.lingers.map_or(0.0, |[r_plus, _]| r_plus) as f32,
                 width: spot.lingers.map_or(0.0, |[_, time]| time) as f32,
                 inner: f32::from(centre.is_denser_at_end()),
+                angular_velocity: centre.pace as f32,
                 thickness: 1.0,
                 ..Self::new(SHAPE_FREE_SPOT, &spot.flow, &spot.glow, &spot.reach, least)
             };
