@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* colour_bar.h -- what the colours of a false-colour picture mean: a bar of them with numbers and a unit, written into
- * the picture. The colours of views are those of docs/views.md. Knows no context. */
+ * the picture. The colours of views are those of docs/views.md. Reads settings of a context, but changes none and
+ * renders nothing. */
 #ifndef EXAMPLES_COLOUR_BAR_H
 #define EXAMPLES_COLOUR_BAR_H
 
@@ -40,8 +41,8 @@ int colour_bar_of_view(BhrView view, ColourBar *bar);
 /* The colours of a film's colour map, along developed light. 0 for BHR_COLOUR_MAP_NONE. */
 int colour_bar_of_film(const BhrFilm *film, ColourBar *bar);
 
-/* The colours of frames: those of their view, where that is light those of their film. 0 for neither, and a bar without
- * marks. */
+/* The bar of a view, for BHR_VIEW_LIGHT that of the film's colour map. Where there is none, 0 and a bar without marks.
+ * */
 int colour_bar_of(BhrView view, const BhrFilm *film, ColourBar *bar);
 
 /* The place of a view's value along its bar, 0 to 1; what lies beyond the ends is put there. */
@@ -66,15 +67,15 @@ void colour_bar_draw(BhrImage *image, const ColourBar *bar, uint32_t scale);
 /* The bar that a context's frames need, as colour_bar_of. */
 BhrStatus colour_bar_of_frames(const BhrContext *context, ColourBar *bar);
 
-/* Draws a bar that has marks. The rows that it takes: none in pictures of less than 300 x 150 pixels, in which no text
- * could be read. */
+/* Draws a bar that has marks, and returns the rows that it took: 0 in pictures of less than 300 x 150 pixels, too small
+ * for text. */
 uint32_t colour_bar_put(BhrImage *image, const ColourBar *bar);
 
 /* The bar of pictures whose disk has the colours of blackbodies, shifted, and no others, as BHR_PRESET_TEACHING makes
  * them: a temperature T is seen as g T. 0 for other scenes, and the bar is as it was. */
 int colour_bar_of_temperatures(const BhrContext *context, ColourBar *bar);
 
-/* The bar of a picture of the scene as it is set, whichever of these it is, drawn. */
+/* Draws the bar that the context's settings call for into a picture, of false colour or of temperatures, if any. */
 BhrStatus colour_bar_add(const BhrContext *context, BhrImage *image);
 
 #ifdef __cplusplus

@@ -53,8 +53,8 @@ typedef struct Progress {
 
 Progress progress_begin(int shown);
 void     progress_draw(Progress *progress, double fraction); /* nothing in the first half second */
-/* Frames that are done of all, how many a second, and the time that is left. `made`: since the progress began, with the
- * part that is done of the next one; `before`: those that were there then. */
+/* Draws how many of all frames are done, how many a second, and the time that is left. `made`: frames since
+ * progress_begin, with the finished share of the next one; `before`: frames that were there then. */
 void progress_draw_frames(Progress *progress, double made, uint32_t before, uint32_t all);
 void progress_clear(Progress *progress); /* takes the bar off the line */
 
@@ -64,8 +64,8 @@ int      end_output(int result);        /* an exit status: EXIT_FAILURE instead 
 double   wall_seconds(void);            /* monotonic; only differences mean something */
 uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */
 int      is_terminal(FILE *stream);
-/* From now on SIGINT, which is Ctrl-C, and SIGTERM are only noted. One that was ignored, as shells start what runs in
- * the background, stays so. A second Ctrl-C ends the program at once. */
+/* From now on SIGINT, which is Ctrl-C, and SIGTERM are only noted. A signal that was ignored at the start, as shells
+ * do with SIGINT for what runs in the background, stays ignored. A second Ctrl-C ends the program at once. */
 void     note_signals(void);
 int      noted_signal(void); /* the first one's number; 0: none came */
 void     program_folder(char *out, size_t size); /* its file's; "." where the system does not tell */

@@ -20,7 +20,7 @@
 
 static const Choice FORMATS[] = {{"png", BHR_FORMAT_RGBA8_SRGB}, {"exr", BHR_FORMAT_RGBA16F}, {NULL, 0}};
 
-/* A frame that is made. */
+/* A frame in the making. */
 typedef struct Slot {
     BhrJob   *job; /* NULL: none is under way */
     uint32_t  frame;
@@ -214,7 +214,8 @@ static int begin(Film *f, Slot *slot, uint32_t frame) {
     return status >= 0 || !report_failure("begin a frame", status);
 }
 
-/* Writes the bar and the clock into a frame, which hold only 8 bits. */
+/* Writes the bar and the clock into a frame of 8 bits. Frames of --format exr hold light alone, and stay as they
+ * are. */
 static void write_words(const Film *f, Slot *slot) {
     BhrImage *image = &slot->image;
     if (f->format != BHR_FORMAT_RGBA8_SRGB) {
@@ -262,8 +263,8 @@ static uint32_t next_frame(const Film *f, uint32_t frame) {
     return frame;
 }
 
-/* Makes all frames. The place for them is opened when the first one is begun: what a scene that cannot be played finds
- * there is kept. 1; 0 after a signal while frames were left, or after a message. */
+/* Makes all frames. The output is opened only once the first frame has begun, so that a scene that cannot be played
+ * removes nothing. 1; 0 after a signal while frames were left, or after a message. */
 static int make_frames(Film *f) {
     uint32_t next = next_frame(f, 0), idle = 0;
     for (uint32_t i = 0; idle < JOBS; i = (i + 1) % JOBS) {
@@ -271,7 +272,7 @@ static int make_frames(Film *f) {
         if (slot->job != NULL && !finish(f, slot)) {
             return 0;
         }
-        if (next == f->frames) { /* at last there are those under way */
+        if (next == f->frames) { /* nothing is left to begin: those under way are waited for */
             idle++;
             continue;
         }
@@ -283,7 +284,7 @@ static int make_frames(Film *f) {
     return 1;
 }
 
-/* Cancels what is under way. Until then the pixels are the jobs'. */
+/* Cancels what is under way. The jobs may write to the pixels until then. */
 static void drop_jobs(Film *f) {
     for (int i = 0; i < JOBS; i++) {
         bhr_job_destroy(f->slots[i].job);

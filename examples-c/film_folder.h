@@ -11,16 +11,16 @@
 /* film.txt begins so, and has lines "frames = N" and "format = ENDING" behind it; every other line is the program's. */
 #define FILM_FOLDER_TITLE "# The film whose pictures are in this folder, for `film --continue`: leave it as it is.\n"
 
-/* Makes the folder, if need be, ready for the film that `film`, the text of its film.txt, tells.
+/* Creates the folder if it is missing, and prepares it for a film. `film`: what film.txt is to say about it.
  *
  *   film.txt there     with go_on                          without
- *   none               there can be no pictures            there can be none
+ *   none               error if there are pictures         the same
  *   this film's        its pictures stay                   they are removed, with a line about it on stderr
  *   another film's     error, with the first difference    they are removed as well
  *
- * Even this film's may show something else: film.txt does not say what the files hold that the scene names.
- * Pictures named as a film's that film.txt does not tell of are never touched, nor is a film.txt of another program:
- * they are an error. 1, or 0 after a message. */
+ * Even this film's pictures may be out of date: film.txt does not cover the contents of maps and LUTs. A picture that
+ * film.txt does not tell of, or a film.txt of another program, is never touched: it is an error. 1, or 0 after a
+ * message. */
 int film_folder_open(const char *folder, const char *film, int go_on);
 
 /* Puts the name of a picture into `name`. */

@@ -64,7 +64,7 @@ static const SceneOption TABLE[] = {
     {"--no-disk", SCENE_DISK, OPTION_UNFLAG, AT(scene.has_disk), NULL, NULL, "leaves the disk out", NULL},
     {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
     {"--shutter", SCENE_DISK, OPTION_DOUBLE, AT(shutter), "T", NULL,
-     "in M: how long matter is seen as it moves, at a moment for each sample", NULL},
+     "in M: how long the shutter is open; matter that moves is blurred, with a moment for each sample", NULL},
 
     {"--volume", SCENE_MATTER, OPTION_TEXTS, AT(volumes), VOLUME_VALUE, "4 of them",
      "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B "

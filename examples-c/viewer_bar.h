@@ -16,14 +16,14 @@ typedef struct BarWindow {
     const char  *unwanted; /* title of the bar whose window cannot be, or was closed by hand */
 } BarWindow;
 
-/* Shows the bar, or another one, or with one without marks none. Where it cannot lie on the window below, or a full
- * screen may hide it, the terminal says what the colours mean. 1: its window is a new one, whose keys and mouse the
- * caller hears. Call it in each turn of the loop, but not from GLFW's callbacks: overlay_tidy is called here, for the
- * other overlays, too. */
+/* Shows this bar in place of any other; a bar without marks hides it. Where it cannot lie on the window below, or a
+ * full screen may hide it, the terminal says what the colours mean. 1 if a new window was made, whose callbacks of keys
+ * and mouse the caller then sets. Call it in each turn of the loop, but not from GLFW's callbacks: overlay_tidy is
+ * called here, for the other overlays, too. */
 int bar_window_set(BarWindow *window, GLFWwindow *below, const ColourBar *bar);
 
-/* Follows the window below and its size, is hidden while the program has lost the keyboard, of which has_focus tells,
- * and gives it back where the system gave it the bar. In each turn, also from callbacks. */
+/* Follows the window below and its size. Hides the bar while the program lacks the keyboard (has_focus), and hands the
+ * keyboard on to the window below where the system gave it to the bar. In each turn, also from callbacks. */
 void bar_window_follow(BarWindow *window, GLFWwindow *below, int has_focus);
 
 /* The height that it takes of the foot of the window below, in screen units. */

@@ -14,7 +14,7 @@ typedef struct Overlay {
     BhrImage    image;     /* that it shows, the lowest row first */
     int         place[2];  /* of its top-left corner from that of the window below, in screen units */
     double      drawn_at;  /* by glfwGetTime */
-    int         had_focus; /* the program, since it was shown */
+    int         had_focus; /* whether the program has had the keyboard since it was shown */
     int         is_placed; /* by the program */
     int         passes_mouse; /* set it before: clicks are for the window below, where GLFW can do that (3.4) */
 } Overlay;
@@ -27,11 +27,11 @@ int overlay_has_place(GLFWwindow *below);
  * where that is not possible, after GLFW's error callback heard why; then there is no window. */
 int overlay_show(Overlay *overlay, GLFWwindow *below, const char *title, const BhrImage *image, int x, int y);
 
-/* Whether it has the keyboard, or a window that was closed has it still. */
+/* Whether the overlay has the keyboard, or one that was closed and is not destroyed yet. */
 int overlay_has_focus(const Overlay *overlay);
 
-/* Whether it may be seen: 0 while the program, which had the keyboard, has it no more. has_focus: whether one of its
- * windows has it. */
+/* Whether it may be shown: 0 after the program has lost the keyboard, until it has it again. has_focus: whether one of
+ * its windows has it. */
 int overlay_is_in_use(Overlay *overlay, int has_focus);
 
 /* Follows the window below. Call it in each turn of the loop. */
@@ -40,9 +40,9 @@ void overlay_follow(Overlay *overlay, GLFWwindow *below);
 /* Takes the window away, if there is one: hides it, also from callbacks, in which GLFW destroys none. */
 void overlay_close(Overlay *overlay);
 
-/* Destroys the windows of all overlays that were closed, once the keyboard has left them: GLFW's key that is held down
- * must not lose its window. Call it in each turn of the loop, but not from GLFW's callbacks. What is left at the end
- * goes with glfwTerminate. */
+/* Destroys the windows of all overlays that were closed, once the keyboard has left them: GLFW fails where a window is
+ * destroyed between a key's press and its release. Call it in each turn of the loop, but not from GLFW's callbacks.
+ * What is left at the end goes with glfwTerminate. */
 void overlay_tidy(void);
 
 #endif

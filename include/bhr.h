@@ -1198,11 +1198,12 @@ BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 /** Reads the time as it is set, scene lengths. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_get_time(const BhrContext *context, double *out_time);
 
-/** Sets how long the shutter is open, scene lengths of time, half of it before the scene's time, 0 .. 1e300; default 0:
- * frames show one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments, evenly over
- * the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as they move; one
- * sample sees the middle. Camera and hole stay. Beyond 1000 M it counts as 1000 M. docs/motion-blur.md.
- * Errors: INVALID_ARGUMENT for another time. @since 0.2.0 */
+/** Sets how long the shutter is open, as scene lengths: from half of it before the scene's time to half of it after.
+ * 0 .. 1e300; default 0, one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments,
+ * evenly over the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as
+ * they move; one sample sees the middle. Camera and hole are as at the scene's time. More than 1000 M acts as 1000 M.
+ * docs/motion-blur.md.
+ * Errors: INVALID_ARGUMENT for a value out of range. @since 0.2.0 */
 BHR_NODISCARD BhrStatus bhr_set_shutter(BhrContext *context, double shutter);
 
 /** Reads how long the shutter is open as it is set, scene lengths. @since 0.2.0 */
@@ -1292,8 +1293,8 @@ typedef struct BhrQuality {
     uint32_t struct_size; /**< sizeof(BhrQuality). */
     BhrMethod method;     /**< BHR_METHOD_*. Default AUTO. */
     /** Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a
-     * CUBE they lie evenly in the pixel; with bhr_set_shutter they are moments. Views other than BHR_VIEW_LIGHT
-     * take one. Pixels that an edge runs through get more rays in any case. */
+     * CUBE they lie evenly in the pixel; while a shutter is open they are moments, all through the pixel's middle.
+     * Views other than BHR_VIEW_LIGHT take one. Pixels that an edge runs through get more rays in any case. */
     uint32_t samples_per_pixel;
     /** Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;

@@ -737,8 +737,8 @@ export interface Quality {
     method: Method;
     /**
      * Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
-     * they lie evenly in the pixel; with bhr_set_shutter they are moments. Views other than "light" take one. Pixels
-     * that an edge runs through get more rays in any case.
+     * they lie evenly in the pixel; while a shutter is open they are moments, all through the pixel's middle. Views
+     * other than "light" take one. Pixels that an edge runs through get more rays in any case.
      * @range 1 .. 256 pixel
      * @default 1
      */

@@ -19,7 +19,7 @@ struct ColourLegend {
     float height(ImVec2 room) const;
     // Into a rectangle of that height and the room's width.
     void draw(ImVec2 corner, ImVec2 size) const;
-    // Its words, for programs that drive this one.
+    // The titles shown, for tests that drive the panel.
     const char *title_of_a() const { return parted && a.count > 0 ? a.title : "none"; }
     const char *title_of_b() const { return b.count > 0 ? b.title : "none"; }
 

@@ -42,12 +42,8 @@ const struct {
     {FILM_FIELDS, "--shoulder-length", "its length", 0.0, nullptr},
     {FILM_FIELDS, "--shoulder-angle", "its angle", 0.0, nullptr},
     {FILM_FIELDS, "--lut-strength", "LUT's share", 0.0, nullptr},
-    {FILM_FIELDS, "--spike-blades", "blades", 0.0, "6"},
-    {FILM_FIELDS, "--spike-angle", "their angle", 0.0, nullptr},
-    {FILM_FIELDS, "--spike-length", "their length", 0.0, nullptr},
-    {FILM_FIELDS, "--streak-length", "its length", 0.0, nullptr},
-    {FILM_FIELDS, "--streak-tint", "its tint", 0.0, nullptr},
-    {FILM_FIELDS, "--flare-ghosts", "ghosts", 0.0, "5"},
+    {FILM_FIELDS, "--spike-blades", nullptr, 0.0, "6"},
+    {FILM_FIELDS, "--flare-ghosts", nullptr, 0.0, "5"},
     {QUALITY_FIELDS, "--samples-per-pixel", "samples", 0.0, nullptr},
     {QUALITY_FIELDS, "--max-disk-order", "disk images", 0.0, nullptr},
     {QUALITY_FIELDS, "--volume-resolution", "deep matter", 0.0, nullptr},
@@ -109,12 +105,12 @@ bool has_unit(const Field &field, const char *unit) {
 void bound(FieldLook &look, const Field &field, double by_default) {
     look.low = field.low;
     look.high = field.high;
+    const bool has_range = field.low < field.high;
     if (field.kind == OPTION_DEGREES) {
-        look.low = std::max(field.low / DEGREE, -180.0);
-        look.high = std::min(field.high / DEGREE, 180.0);
+        look.low = has_range ? std::max(field.low / DEGREE, -180.0) : -180.0;
+        look.high = has_range ? std::min(field.high / DEGREE, 180.0) : 180.0;
         return;
     }
-    const bool has_range = field.low < field.high;
     const bool fits = has_range && field.high - field.low <= LINEAR_SPAN;
     look.logarithmic = !fits || (field.low > 0.0 && field.high / field.low > LINEAR_RATIO);
     if (!fits && by_default > 0.0) {

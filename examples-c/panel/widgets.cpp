@@ -129,10 +129,10 @@ void Widgets::number(const char *label, double value, double low, double high, c
 }
 
 void Widgets::whole(const char *label, uint32_t value, uint32_t low, uint32_t high, const Set<uint32_t> &set,
-                    const std::string &tip) {
+                    const std::string &tip, const char *format) {
     begin_row(label, tip);
     const ImGuiSliderFlags flags = high > 100 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-    if (ImGui::SliderScalar("##value", ImGuiDataType_U32, &value, &low, &high, "%u", flags)) {
+    if (ImGui::SliderScalar("##value", ImGuiDataType_U32, &value, &low, &high, format, flags)) {
         try_number(label, value, [&] { return set(value); });
     }
     end_row(label, tip);
@@ -256,10 +256,13 @@ void Widgets::field(const Field *list, const Field &field, char *target, const c
     case OPTION_CHOICE:
         choice(label.c_str(), *reinterpret_cast<const int32_t *>(target), field.choices, assign, tip);
         break;
-    case OPTION_UINT:
-        whole(label.c_str(), *reinterpret_cast<const uint32_t *>(target), static_cast<uint32_t>(field.low),
-              static_cast<uint32_t>(field.high), assign, tip);
+    case OPTION_UINT: {
+        const uint32_t    now = *reinterpret_cast<const uint32_t *>(target);
+        const std::string word = look_of(list, field, 0.0, now).format; // of what 0 stands for
+        whole(label.c_str(), now, static_cast<uint32_t>(field.low), static_cast<uint32_t>(field.high), assign, tip,
+              now == 0 && word[0] != '%' ? word.c_str() : "%u");
         break;
+    }
     case OPTION_UINT64:
         seed(label.c_str(), *reinterpret_cast<const uint64_t *>(target), assign, tip);
         break;

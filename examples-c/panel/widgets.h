@@ -46,7 +46,7 @@ protected:
     void number(const char *label, double value, double low, double high, const char *format, bool logarithmic,
                 const Set<double> &set, const std::string &tip = "");
     void whole(const char *label, uint32_t value, uint32_t low, uint32_t high, const Set<uint32_t> &set,
-               const std::string &tip = "");
+               const std::string &tip = "", const char *format = "%u");
     void vector(const char *label, const double value[3], const Set<const double *> &set, const std::string &tip = "");
     // A value that is none of the choices shows nothing.
     void choice(const char *label, int32_t value, const Choice *choices, const Set<int32_t> &set,

@@ -152,11 +152,12 @@ pub unsafe extern "C" fn bhr_get_time(context: *const BhrContext, out_time: *mut
     }
 }
 
-/// Sets how long the shutter is open, scene lengths of time, half of it before the scene's time, 0 .. 1e300; default 0:
-/// frames show one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments, evenly over
-/// the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as they move; one
-/// sample sees the middle. Camera and hole stay. Beyond 1000 M it counts as 1000 M. docs/motion-blur.md.
-/// Errors: INVALID_ARGUMENT for another time. @since 0.2.0
+/// Sets how long the shutter is open, as scene lengths: from half of it before the scene's time to half of it after.
+/// 0 .. 1e300; default 0, one moment. While it is open a pixel's samples (BhrQuality.samples_per_pixel) are moments,
+/// evenly over the time, at which disk, volumes and spots are seen through the pixel's middle, so that they blur as
+/// they move; one sample sees the middle. Camera and hole are as at the scene's time. More than 1000 M acts as 1000 M.
+/// docs/motion-blur.md.
+/// Errors: INVALID_ARGUMENT for a value out of range. @since 0.2.0
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_shutter(context: *mut BhrContext, shutter: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

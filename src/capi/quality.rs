@@ -38,8 +38,8 @@ pub struct BhrQuality {
     /// BHR_METHOD_*. Default AUTO.
     pub method: BhrMethod,
     /// Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a
-    /// CUBE they lie evenly in the pixel; with bhr_set_shutter they are moments. Views other than BHR_VIEW_LIGHT
-    /// take one. Pixels that an edge runs through get more rays in any case.
+    /// CUBE they lie evenly in the pixel; while a shutter is open they are moments, all through the pixel's middle.
+    /// Views other than BHR_VIEW_LIGHT take one. Pixels that an edge runs through get more rays in any case.
     pub samples_per_pixel: u32,
     /// Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
     pub max_steps: u32,

@@ -65,8 +65,9 @@ impl HdrParams {
 }
 
 /// The PQ code of light in parts of 10,000 cd/m^2, both 0 .. 1: ((C1 + C2 p) / (1 + C3 p))^M2, p = light^M1. The base
-/// is close to 1 and M2 is 79: in f32 its distance from 1, (1 - C1) (1 - p) / (1 + C3 p), keeps the digits of the code.
-/// WGSL, which has no such logarithm, takes the power: its twin is compared as codes of ten bits are.
+/// is close to 1, and the power of 79 magnifies its rounding error in f32: ln_1p of what it lacks to 1, (1 - C1) (1 -
+/// p) / (1 + C3 p), does not. WGSL has no ln_1p and takes the power; the test of that twin allows the error of 10-bit
+/// codes.
 pub(crate) fn pq_encode(light: f32) -> f32 {
     let power = light.powf(PQ_M1);
     let below = (1.0 - PQ_C1) * (1.0 - power) / (1.0 + PQ_C3 * power);

@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// The formulas of AgX as they stand above, in f64, with the constants above, which another test compares.
+    /// The formulas above in f64, with the same constants; another test compares those with their source.
     #[test]
     fn agx_is_its_formula_to_1e_6() {
         let curve = |v: f64| {

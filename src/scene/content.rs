@@ -161,7 +161,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// The longest time, M, that the shutter is open: some hundred orbits about a fast hole.
+    /// The longest time, M, that the shutter is open: some 70 orbits at the inner edge about a fast hole.
     pub const LONGEST_SHUTTER: f64 = 1000.0;
 
     /// How long the shutter may be open, scene lengths. Errors: INVALID_ARGUMENT.
@@ -293,7 +293,7 @@ impl Scene {
         When { time, reference_delay, delayed, shutter: self.open_shutter().0 }
     }
 
-    /// The shutter in M. A tiny mass makes its time no longer than `LONGEST_SHUTTER`.
+    /// The shutter in M, at most `LONGEST_SHUTTER`: a tiny mass would make it endless.
     pub fn open_shutter(&self) -> Shutter {
         Shutter((self.shutter / self.hole.mass).min(Self::LONGEST_SHUTTER))
     }

@@ -67,8 +67,8 @@ fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
 }
 
 /// The place of a sample in its pixel, and the time at which it sees matter less that of the frame, M. While a shutter
-/// is open samples are moments, all through the middle of the pixel: light is filtered there, and one place at a few
-/// moments tells more of what moves than as many places at a moment each.
+/// is open the samples differ in time alone, and all go through the middle of the pixel: light is filtered there, and
+/// samples that differ in place, too, would mix noise of place into the blur.
 pub fn sample_of(index: u32, count: u32, projection: Projection, shutter: Shutter) -> ([f64; 2], f64) {
     match shutter.is_open() {
         true => ([0.5; 2], shutter.moment(index, count)),

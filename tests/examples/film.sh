@@ -73,8 +73,8 @@ film_goes_on() {
         "${command[@]}" --output "$folder" --continue | grep -xF "24 frames, 0 of them new: $folder"
 }
 
-# A terminal sends Ctrl-C to all processes of a group: ffmpeg still ends the video, which has every frame that is told
-# of. A second Ctrl-C ends the program even where ffmpeg hangs.
+# A terminal sends Ctrl-C to all processes of a group: ffmpeg still finishes the video, which holds every frame that the
+# message counts. A second Ctrl-C ends the program even where ffmpeg hangs.
 film_into_a_video_is_interrupted() {
     local video=$scratch/interrupted.mp4 scene=$scratch/long.toml pid status=0
     long_film "$scene" || return 1
@@ -131,7 +131,7 @@ film_in_a_folder_of_another() {
         exits 1 "'format = png' where this one has 'format = exr'" "${command[@]}" --frames 5 --format exr \
             --output "$folder/a" --continue &&
         diff -r "$folder/a" "$folder/kept" || return 1
-    # Without it the other film's pictures go, and foreign ones are an error before any does.
+    # Without --continue the other film's pictures are removed, but unknown pictures are an error before that.
     : >"$folder/a/frame-00005.png" &&
         exits 1 'frame-00005.png is there' "${command[@]}" --frames 2 --output "$folder/a" &&
         rm -- "$folder/a/frame-00005.png" && diff -r "$folder/a" "$folder/kept" &&

@@ -107,7 +107,7 @@ fn light_that_is_not_kept_is_metered_alike() {
     }
 }
 
-/// Black stays black, up to the edge of the shadow, and what was clipped is not.
+/// Black stays black up to the edge of the shadow, and most of what was clipped no longer is.
 #[test]
 fn the_shadow_has_no_halo() {
     for (tracer, mut renderer) in both() {
@@ -130,8 +130,8 @@ fn the_shadow_has_no_halo() {
     }
 }
 
-/// No halo, bright or dark, lies about the disk and the shadow: a sky that is everywhere as bright stays so, beside a
-/// disk of a hundred times its light and beside black.
+/// No halo, bright or dark, lies about the disk and the shadow: a sky of even brightness stays even, beside a disk a
+/// hundred times as bright and beside black.
 #[test]
 fn a_flat_sky_stays_flat_beside_disk_and_shadow() {
     for (tracer, mut renderer) in both() {
@@ -139,7 +139,7 @@ fn a_flat_sky_stays_flat_beside_disk_and_shadow() {
         let map = ImageRef::new(Layout::packed(PixelFormat::Rgba32F, 64, 32), bytemuck::cast_slice(&texels)).unwrap();
         renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&map).unwrap().into()));
         renderer.scene.sky.flags = Sky::MAP;
-        // The light of the map as it is, and of the disk.
+        // Without effects the map and the disk show their own light.
         renderer.scene.effects.0 = 0;
         let film = Film { tone_map: ToneMap::None, bloom: 0.0, exposure_ev: 2.0, ..renderer.scene.film };
         renderer.scene.film = Film { highlights: 0.7, shadows: 0.7, ..film };

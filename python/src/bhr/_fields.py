@@ -388,8 +388,8 @@ class Quality(Struct):
     #: One of Method. Default AUTO.
     method: Named[Method, MethodName] = named(Method.AUTO)
     #: Samples of each pixel, 1 .. 256. Default 1. More than one are weighted by a B-spline 3 pixels wide; in a CUBE
-    #: they lie evenly in the pixel; with bhr_set_shutter they are moments. Views other than View.LIGHT take one. Pixels
-    #: that an edge runs through get more rays in any case.
+    #: they lie evenly in the pixel; while a shutter is open they are moments, all through the pixel's middle. Views
+    #: other than View.LIGHT take one. Pixels that an edge runs through get more rays in any case.
     samples_per_pixel: int = 1
     #: Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is Fate.UNRESOLVED.
     max_steps: int = 2000
