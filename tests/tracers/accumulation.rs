@@ -178,9 +178,8 @@ const MOVING: [Moving; 8] = [
     ),
 ];
 
-/// One of each kind that is rendered fast.
-const EVERYDAY: [&str; 3] =
-    ["thin disk, spin 0.9", "hot spot, light without delay", "falling spot, light without delay"];
+/// One of the plane and one of matter with depth.
+const EVERYDAY: [&str; 2] = ["thin disk, spin 0.9", "falling spot, light without delay"];
 
 /// A spot that falls past the hole.
 fn falling() -> HotSpot {

@@ -257,8 +257,10 @@ await test("a first frame leaves the page its thread, and is shown before its ed
     holds(found.frames === 1, `${found.frames} frames for one call`);
     // On a busy machine what is there may seem to take long now and then.
     holds(Math.min(...found.waits) === 0, `a frame waits for ${found.waits.join(", ")} timers`);
-    // 0.15 s on an idle machine; tests run beside others. All of it in one task took 1.6 s.
-    holds(Math.max(0, ...found.tasks) < 600, `the page stood still for ${found.tasks.join(", ")} ms`);
+    // 0.15 s on an idle machine. Tests run beside others, which may stop a task for longer: then it must be no large
+    // part of the whole. All of it in one task took 1.6 s.
+    const [longest, whole] = [Math.max(0, ...found.tasks), found.tasks.reduce((sum, task) => sum + task, 0)];
+    holds(longest < 600 || longest < 0.4 * whole, `the page stood still for ${found.tasks.join(", ")} ms`);
     holds(said.length === 0, said.join("\n"));
 });
 
