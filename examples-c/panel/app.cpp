@@ -303,7 +303,7 @@ Picture::Input App::draw_picture() {
     const bool      bare = options_.bare != 0, parted = comparison_.shown() && !bare;
     const BhrImage &image = picture_.pixels().image;
     const ImVec2    corner = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    const double    rate = performance_.frames_per_second();
+    const double    rate = queue_.in_flight() > 0 ? performance_.frames_per_second() : 0.0; // at rest there is none
     char            news[96];
     std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
                   rate);

@@ -111,7 +111,7 @@ void Performance::draw(const BhrAdapterInfo &adapter, size_t in_flight, unsigned
                {"readback", readback_.values.data(), colour::ergosphere}},
               HISTORY, "%g ms", -1);
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(colour::dim), "frames per second:");
-    std::snprintf(text, sizeof text, rate_ > 0.0 ? "%.1f" : "at rest", rate_);
+    std::snprintf(text, sizeof text, in_flight > 0 && rate_ > 0.0 ? "%.1f" : "at rest", rate_);
     legend(text, colour::crossing);
     line_plot("rate", {ImGui::GetContentRegionAvail().x, height},
               {{"rate", rates_.values.data(), colour::crossing}}, HISTORY, "%g / s", -1);
