@@ -108,17 +108,9 @@ impl GpuTracer {
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(
-            device,
-            bytemuck::bytes_of(&pass_of(
-                request,
-                whole,
-                (0, 1),
-                (scene.camera.projection, Shutter::default()),
-                0,
-                [0, 0],
-            )),
-        )?;
+        let lens = (scene.camera.projection, Shutter::default());
+        let pass = pass_of(request, whole, (0, 1), lens, 0, [0, 0]);
+        fixed.passes.write(device, bytemuck::bytes_of(&pass))?;
         let mut encoder = device.encoder("records")?;
         if let Some(bake) = tables.bake(device, &self.kernels, &setup)? {
             bake.encode(&mut encoder);
